@@ -1,0 +1,48 @@
+# A thin front: installs the Debian packages, then calls CMake and CTest. `make help` lists what there is.
+
+PRESET ?= release
+BUILD = build/$(PRESET)
+DEMO_SCENE ?= scenes/caustic-glass.pbrt
+
+# One compiler a processor, but no more than memory allows at about 1.5 GB each.
+JOBS ?= $(shell memory=$$(awk '/MemAvailable/ { print int($$2 / 1500000) }' /proc/meminfo 2>/dev/null); \
+                processors=$$(nproc); \
+                [ -n "$$memory" ] && [ "$$memory" -lt "$$processors" ] && processors=$$memory; \
+                [ "$$processors" -ge 1 ] && echo $$processors || echo 1)
+
+.PHONY: help packages build demo test bench format clean
+
+help:
+	@echo 'make demo    install what is missing, build, render a caustic to build/demo.png'
+	@echo 'make test    install what is missing, build, run all tests'
+	@echo 'make build   install what is missing, build; the program is build/release/dapple'
+	@echo 'make bench   build, run the benchmarks'
+	@echo 'make format  clang-format all sources'
+	@echo 'make clean   remove build/'
+	@echo 'Variables: PRESET=release|portable|debug|asan|tsan, JOBS=N'
+
+packages:
+	@scripts/install_packages.sh
+
+build: packages
+	@cmake --preset $(PRESET)
+	@cmake --build $(BUILD) --parallel $(JOBS)
+
+demo: packages
+	@cmake --preset $(PRESET)
+	@cmake --build $(BUILD) --parallel $(JOBS) --target dapple
+	@$(BUILD)/dapple render $(DEMO_SCENE) -o build/demo.png
+	@echo "The picture is $(CURDIR)/build/demo.png"
+
+# Tests labelled slow compare with the reference images in the folder that DAPPLE_REFERENCES names; without it they are skipped.
+test: build
+	@ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+bench: build
+	@for program in $(BUILD)/bench/*_bench; do echo "== $$program"; $$program || exit 1; done
+
+format:
+	@git ls-files --cached --others --exclude-standard '*.h' '*.cpp' | xargs clang-format -i
+
+clean:
+	rm -rf build

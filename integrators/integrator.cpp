@@ -1,0 +1,55 @@
+#include "integrators/integrator.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "integrators/light_tracing.h"
+#include "integrators/path.h"
+#include "integrators/sppm.h"
+#include "src/base/error.h"
+
+namespace dapple {
+
+PassStats& PassStats::operator+=(const PassStats& s) {
+  cameraRays += s.cameraRays;
+  shadowRays += s.shadowRays;
+  photonRays += s.photonRays;
+  photonsEmitted += s.photonsEmitted;
+  photonsStored += s.photonsStored;
+  gathers += s.gathers;
+  photonsGathered += s.photonsGathered;
+  splats += s.splats;
+  return *this;
+}
+
+std::vector<std::string_view> IntegratorNames() { return {"path", "light_tracing", "sppm"}; }
+
+std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const IntegratorOptions& options) {
+  if (name == "path") return std::make_unique<PathIntegrator>(options);
+  if (name == "light_tracing") return std::make_unique<LightTracingIntegrator>(options);
+  if (name == "sppm") return std::make_unique<SppmIntegrator>(options);
+  throw Error(fmt::format("unknown integrator \"{}\"; expected auto, {}", name, fmt::join(IntegratorNames(), ", ")));
+}
+
+IntegratorChoice SelectIntegrator(const SceneFacts& facts) {
+  if (!facts.MayHaveCaustics()) return {"path", "no specular surface throws light on another one: no caustics"};
+  if (facts.hasDeltaLight)
+    return {"sppm", "a specular surface and a light of no extent: paths cannot find its caustics"};
+  constexpr double kSmallShare = 0.05;
+  if (facts.smallestLightShare < kSmallShare)
+    return {"sppm",
+            fmt::format("a specular surface and a light that covers {:.2g} of all directions: paths seldom find its "
+                        "caustics",
+                        facts.smallestLightShare)};
+  return {"path", "only large lights: paths find their caustics by chance"};
+}
+
+IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene) {
+  if (!requested.empty() && requested != "auto") return {std::string(requested), "asked for"};
+  const std::string& fromScene = scene.Settings().integrator;
+  for (std::string_view known : IntegratorNames())
+    if (requested.empty() && fromScene == known) return {fromScene, "the scene asks for it"};
+  return SelectIntegrator(scene.Facts());
+}
+
+}  // namespace dapple

@@ -1,0 +1,75 @@
+// The interface of all algorithms: prepare once, then render passes that know nothing of each other.
+//
+// `Prepare` makes immutable state from scene and seed. `RenderPass(pass, film)` adds the pass-th estimate of the whole
+// image; it depends on scene, seed, prepared state and pass number alone, and is itself parallel. The image is the mean
+// of the passes. Budgets, progress, snapshots and checkpoints belong to the driver (src/render).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "src/image/film.h"
+#include "src/scene/scene.h"
+
+namespace dapple {
+
+/// What a pass did: counted where it happens, summed over passes.
+struct PassStats {
+  int64_t cameraRays = 0;      ///< segments traced from the camera, bounces included
+  int64_t shadowRays = 0;      ///< visibility tests of connections
+  int64_t photonRays = 0;      ///< segments traced from the lights
+  int64_t photonsEmitted = 0;  ///< light paths begun
+  int64_t photonsStored = 0;
+  int64_t gathers = 0;          ///< photon map queries
+  int64_t photonsGathered = 0;  ///< photons within reach of a query
+  int64_t splats = 0;           ///< light path vertices joined to the camera
+
+  int64_t Rays() const { return cameraRays + shadowRays + photonRays; }
+  PassStats& operator+=(const PassStats& s);
+};
+
+/// What the user may set; absent values follow from the scene.
+struct IntegratorOptions {
+  int maxDepth = 32;                  ///< scattering events on a path from light to camera
+  std::optional<int> photonsPerPass;  ///< light paths a pass
+  std::optional<double> radius;       ///< starting radius of density estimates, in scene units
+  double radiusInPixels = 1;          ///< the same in footprints of a pixel, where `radius` is absent
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  virtual std::string_view Name() const = 0;
+  /// The scene must outlive the integrator. Called once, before any pass.
+  virtual void Prepare(const Scene& scene, uint64_t seed) = 0;
+  /// Adds pass number `pass` (from 0) to the film. May be called in any order and for any set of passes.
+  virtual PassStats RenderPass(int pass, Film& film) const = 0;
+  /// Passes where neither the scene nor the user says how many.
+  virtual int DefaultPasses() const = 0;
+};
+
+/// The names that `MakeIntegrator` knows, without "auto".
+std::vector<std::string_view> IntegratorNames();
+
+/// Throws `Error` for an unknown name, listing those known.
+std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const IntegratorOptions& options);
+
+/// An integrator's name, and in a few words why it was chosen.
+struct IntegratorChoice {
+  std::string name;
+  std::string reason;
+};
+
+/// The rule behind "auto": photons where a specular surface and a small or delta light can make caustics, paths
+/// otherwise.
+IntegratorChoice SelectIntegrator(const SceneFacts& facts);
+
+/// The user's name, else the scene's where Dapple has it, else `SelectIntegrator`. `requested` may be empty or "auto".
+IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene);
+
+}  // namespace dapple

@@ -1,0 +1,35 @@
+// Light tracing: paths from the lights, each vertex joined to the camera (Arvo 1986; Dutre, Lafortune and Willems 1993;
+// pbrt-v4, section 16.1). It sees caustics at their best, and nothing through glass or in mirrors. What the camera sees
+// of the lights themselves comes from one ray a pixel. A pass has as many light paths as the picture has pixels, or as
+// asked.
+#pragma once
+
+#include "integrators/integrator.h"
+#include "src/photons/light_path.h"
+
+namespace dapple {
+
+class LightTracingIntegrator final : public Integrator {
+ public:
+  explicit LightTracingIntegrator(const IntegratorOptions& options)
+      : maxDepth_(options.maxDepth), photonsPerPass_(options.photonsPerPass) {}
+
+  std::string_view Name() const override { return "light_tracing"; }
+  /// Throws `Error` where the camera cannot be joined to a point.
+  void Prepare(const Scene& scene, uint64_t seed) override;
+  PassStats RenderPass(int pass, Film& film) const override;
+  int DefaultPasses() const override { return 64; }
+
+ private:
+  PassStats RenderEmitters(int pass, Film& film) const;
+  PassStats RenderLightPaths(int pass, Film& film) const;
+  void Join(const LightVertex& vertex, const Vec2d& uLens, float weight, int pass, Film& film, PassStats& stats) const;
+
+  int maxDepth_;
+  std::optional<int> photonsPerPass_;
+  const Scene* scene_ = nullptr;
+  std::optional<EmissionSampler> emission_;
+  uint64_t seed_ = 0;
+};
+
+}  // namespace dapple

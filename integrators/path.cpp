@@ -1,0 +1,58 @@
+#include "integrators/path.h"
+
+#include "integrators/camera_path.h"
+#include "integrators/pixel_loop.h"
+
+namespace dapple {
+
+void PathIntegrator::Prepare(const Scene& scene, uint64_t seed) {
+  scene_ = &scene;
+  seed_ = seed;
+}
+
+PassStats PathIntegrator::RenderPass(int pass, Film& film) const {
+  const PassStats stats = ForEachPixel(film, [&](const Vec2i& pixel, PassStats& tileStats) {
+    Sampler sampler = Sampler::ForPixel(seed_, pixel, pass);
+    const PixelSample sample = SamplePixel(*scene_, film, pixel, sampler);
+    film.AddSample(pixel, Radiance(sample.camera.ray, sampler, tileStats) * sample.weight, pass);
+  });
+  film.FinishPass(pass);
+  return stats;
+}
+
+Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) const {
+  Color radiance, throughput(1);
+  LastScattering last;
+  float etaScale = 1;
+  for (int scattered = 0;;) {
+    ++stats.cameraRays;
+    const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
+    radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last);
+    if (!hit || scattered >= maxDepth_) return radiance;
+    const Material* material = scene_->MaterialAt(*hit);
+    if (!material) {
+      ray = SpawnRay(*hit, ray.d);
+      continue;
+    }
+    const Bsdf bsdf = material->GetBsdf(*hit);
+    if (bsdf.IsBlack()) return radiance;
+
+    ++scattered;
+    sampler.StartBlock(scattered);
+    const Vec2d uDirection = sampler.Get2D();
+    const double uLobe = sampler.Get1D();
+    const double uRoulette = sampler.Get1D();
+    if (!bsdf.IsPurelySpecular()) radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, sampler, stats);
+
+    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
+    if (!next) return radiance;
+    throughput *= next->weight;
+    etaScale *= next->eta * next->eta;
+    last = {next->IsSpecular(), ContextOf(*hit, bsdf), next->pdf};
+    ray = SpawnRay(*hit, next->wi);
+    constexpr int kSureBounces = 3;
+    if (scattered > kSureBounces && !SurvivesRoulette(uRoulette, etaScale, &throughput)) return radiance;
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,28 @@
+// Unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986; Veach 1997,
+// chapter 9; pbrt-v4, section 14.5): the reference for all that it can see. It cannot see light of delta lights through
+// smooth glass or by mirrors, and sees caustics of small lights badly. A pass is one path a pixel.
+#pragma once
+
+#include "integrators/integrator.h"
+#include "src/sampling/sampler.h"
+
+namespace dapple {
+
+class PathIntegrator final : public Integrator {
+ public:
+  explicit PathIntegrator(const IntegratorOptions& options) : maxDepth_(options.maxDepth) {}
+
+  std::string_view Name() const override { return "path"; }
+  void Prepare(const Scene& scene, uint64_t seed) override;
+  PassStats RenderPass(int pass, Film& film) const override;
+  int DefaultPasses() const override { return 64; }
+
+ private:
+  Color Radiance(Ray ray, Sampler& sampler, PassStats& stats) const;
+
+  int maxDepth_;
+  const Scene* scene_ = nullptr;
+  uint64_t seed_ = 0;
+};
+
+}  // namespace dapple

@@ -1,0 +1,15 @@
+// The loop over the pixels of a film: tiles in parallel, one thread a tile.
+#pragma once
+
+#include <functional>
+
+#include "integrators/integrator.h"
+#include "src/image/film.h"
+
+namespace dapple {
+
+/// Calls `render(pixel, stats)` for each pixel of the film's crop. Tiles run in parallel, in rows of the picture; each
+/// has counters of its own, and their sum is returned.
+PassStats ForEachPixel(const Film& film, const std::function<void(const Vec2i& pixel, PassStats& stats)>& render);
+
+}  // namespace dapple

@@ -1,0 +1,79 @@
+// An area light: a shape that glows with the same radiance in all directions of its outside, or of both sides.
+//
+// pbrt: `AreaLightSource "diffuse"`. Rays leave from points uniform in the area, with directions by the cosine. Toward
+// a point, a primitive of the shape is chosen by area, then a direction in the solid angle that it covers.
+#pragma once
+
+#include "lights/light.h"
+#include "src/geometry/shape.h"
+#include "src/materials/texture.h"
+#include "src/sampling/distribution.h"
+
+namespace dapple {
+
+class AreaLight final : public Light {
+ public:
+  /// The light of `shape`, which must live as long; radiance on the outside (the side of `ng`), or on both sides.
+  AreaLight(const Shape* shape, const Color& radiance, bool twoSided);
+  /// Radiance by surface coordinates. `alpha`: where it is 0 there is a hole that emits nothing; null: no holes.
+  AreaLight(const Shape* shape, ColorTexturePtr radiance, bool twoSided, FloatTexturePtr alpha = nullptr);
+
+  std::string_view Name() const override { return "area"; }
+  /// pi L times the area, of both sides if two-sided; with a texture, its mean is taken over a fixed set of points.
+  Color Power() const override;
+  double ImportanceAt(const LightContext& at) const override;
+
+  std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override;
+  double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
+  /// `part` is the middle of what gives the primitive.
+  LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
+
+  std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
+  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
+  /// `part` is the middle of what gives the primitive. Finds the primitive nearest to the ray's origin: slow in big
+  /// meshes.
+  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+
+  Color L(const SurfaceInteraction& hit, const Vec3& w) const override;
+
+  bool IsTwoSided() const { return twoSided_; }
+  /// Of one side, all primitives together.
+  double Area() const { return area_; }
+
+ private:
+  struct Primitive {
+    int index = 0;
+    double probability = 1;
+  };
+
+  /// The light lies in a plane and shines to one side of it only.
+  struct Plane {
+    Vec3 normal;
+    float offset = 0;  ///< Dot(normal, p) of none of its points is less
+  };
+
+  Color RadianceAt(const TextureContext& at) const;
+  Color MeanRadiance() const;
+  std::optional<Plane> FindPlane() const;
+  Primitive ChoosePrimitive(double u) const;
+  double PrimitiveProbability(int primitive) const { return byArea_.Size() > 0 ? byArea_.Probability(primitive) : 1; }
+  double InvertPrimitive(int primitive) const {
+    return byArea_.Size() > 0 ? byArea_.InvertDiscrete(primitive, 0.5) : 0.5;
+  }
+  int PrimitiveAt(const Vec3& p) const;
+  /// The density per solid angle of an emitted ray whose angle with the outside normal has this cosine.
+  double DirectionPdf(float cosTheta) const;
+
+  const Shape* shape_;
+  ColorTexturePtr radiance_;
+  FloatTexturePtr alpha_;
+  bool twoSided_;
+  Distribution1D byArea_;  // empty for one primitive
+  double area_ = 0;
+  bool isUniform_ = true;  // all primitives are sampled with a density of 1 / area
+  Color meanRadiance_;
+  Bounds3 bounds_;
+  std::optional<Plane> plane_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,165 @@
+#include "lights/environment_light.h"
+
+#include "lights/emission_disk.h"
+#include "lights/light_math.h"
+#include "src/base/error.h"
+#include "src/base/frame.h"
+#include "src/sampling/warps.h"
+
+namespace dapple {
+
+namespace {
+
+/// The orthogonal matrix nearest to `m`, whose columns are given: the limit of averaging it with its inverse transpose
+/// (Higham 1986, "Computing the polar decomposition").
+void Orthogonalize(Vec3d (&m)[3]) {
+  for (int iteration = 0; iteration < 64; ++iteration) {
+    // The inverse transpose has the cross products of the columns, divided by the determinant, as its columns.
+    const double determinant = Dot(m[0], Cross(m[1], m[2]));
+    const Vec3d dual[3] = {Cross(m[1], m[2]) / determinant, Cross(m[2], m[0]) / determinant,
+                           Cross(m[0], m[1]) / determinant};
+    double change = 0;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3d next = (m[i] + dual[i]) * 0.5;
+      change = std::max(change, MaxAbsComponent(next - m[i]));
+      m[i] = next;
+    }
+    if (change < 1e-15) break;
+  }
+}
+
+}  // namespace
+
+EnvironmentLight::EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale,
+                                   Mapping mapping)
+    : map_(image, mapping, scale), axes_{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)} {
+  if (lightToRender.IsSingular()) throw Error("transform of an infinite light cannot be inverted: expected a rotation");
+  double longest = 0;
+  for (Vec3d& axis : axes_) longest = std::max(longest, Length(axis = lightToRender.Vector(axis)));
+  for (Vec3d& axis : axes_) axis /= longest;
+  Orthogonalize(axes_);
+}
+
+Vec3 EnvironmentLight::ToRender(const Vec3d& w) const {
+  return ToFloat(axes_[0] * w.x + axes_[1] * w.y + axes_[2] * w.z);
+}
+
+Vec3d EnvironmentLight::ToMap(const Vec3& w) const {
+  const Vec3d d = ToDouble(w);
+  return {Dot(d, axes_[0]), Dot(d, axes_[1]), Dot(d, axes_[2])};
+}
+
+Color EnvironmentLight::Power() const { return FiniteColor(map_.Integral(), EmissionDisk(extent_, {0, 0, 1}).area); }
+
+double EnvironmentLight::ImportanceAt(const LightContext&) const {
+  // pi times the mean radiance.
+  return static_cast<double>(map_.Integral().MaxComponent()) / 4;
+}
+
+std::optional<LiSample> EnvironmentLight::Sample_Li(const LightContext& at, const LiRandom& u) const {
+  if (map_.IsBlack()) return std::nullopt;
+  LiSample sample;
+  sample.wi = ToRender(map_.Sample(u.direction));
+  const EnvironmentValue value = map_.Evaluate(ToMap(sample.wi));
+  if (value.pdf == 0 || value.L.IsBlack()) return std::nullopt;
+  sample.L = value.L;
+  sample.pdf = value.pdf;
+  sample.p = PointOutside(extent_, at.p, sample.wi);
+  return sample;
+}
+
+double EnvironmentLight::Pdf_Li(const LightContext&, const Vec3& wi, const SurfaceInteraction*) const {
+  return map_.Evaluate(ToMap(wi)).pdf;
+}
+
+LiRandom EnvironmentLight::Invert_Li(const LightContext&, const Vec3& wi, const SurfaceInteraction*) const {
+  LiRandom u;
+  if (!map_.IsBlack()) u.direction = map_.Invert(ToMap(wi));
+  return u;
+}
+
+std::optional<LeSample> EnvironmentLight::Sample_Le(const LeRandom& u) const {
+  if (map_.IsBlack()) return std::nullopt;
+  const Vec3 wi = ToRender(map_.Sample(u.direction));
+  const EnvironmentValue value = map_.Evaluate(ToMap(wi));
+  if (value.pdf == 0 || value.L.IsBlack()) return std::nullopt;
+  const EmissionDisk disk(extent_, wi);
+  LeSample sample;
+  sample.ray = Ray{disk.Sample(u.position), -wi};
+  sample.Le = value.L;
+  sample.pdfPos = 1 / disk.area;
+  sample.pdfDir = value.pdf;
+  return sample;
+}
+
+LePdf EnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
+  return {EmissionDisk(extent_, -ray.d).Pdf(ray.o), map_.Evaluate(ToMap(-ray.d)).pdf};
+}
+
+LeRandom EnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
+  LeRandom u;
+  if (!map_.IsBlack()) u.direction = map_.Invert(ToMap(-ray.d));
+  u.position = EmissionDisk(extent_, -ray.d).Invert(ray.o);
+  return u;
+}
+
+Color EnvironmentLight::Le(const Ray& ray) const { return map_.Radiance(ToMap(ray.d)); }
+
+Color UniformEnvironmentLight::Power() const {
+  return FiniteColor(L_, 4 * kPiD * EmissionDisk(extent_, {0, 0, 1}).area);
+}
+
+double UniformEnvironmentLight::ImportanceAt(const LightContext&) const {
+  return kPiD * static_cast<double>(L_.MaxComponent());
+}
+
+std::optional<LiSample> UniformEnvironmentLight::Sample_Li(const LightContext& at, const LiRandom& u) const {
+  if (L_.IsBlack()) return std::nullopt;
+  LiSample sample;
+  if (HasHorizon(at)) {
+    sample.wi = Normalize(Frame::FromZ(at.ns).ToWorld(ToFloat(SampleCosineHemisphere(u.direction))));
+  } else {
+    sample.wi = ToFloat(SampleSphere(u.direction));
+  }
+  sample.pdf = Pdf_Li(at, sample.wi, nullptr);
+  if (sample.pdf == 0) return std::nullopt;
+  sample.L = L_;
+  sample.p = PointOutside(extent_, at.p, sample.wi);
+  return sample;
+}
+
+double UniformEnvironmentLight::Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
+  return HasHorizon(at) ? CosineHemispherePdf(static_cast<double>(Dot(at.ns, wi))) : kSpherePdf;
+}
+
+LiRandom UniformEnvironmentLight::Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
+  LiRandom u;
+  u.direction =
+      HasHorizon(at) ? InvertCosineHemisphere(ToDouble(Frame::FromZ(at.ns).ToLocal(wi))) : InvertSphere(ToDouble(wi));
+  return u;
+}
+
+std::optional<LeSample> UniformEnvironmentLight::Sample_Le(const LeRandom& u) const {
+  if (L_.IsBlack()) return std::nullopt;
+  const Vec3 wi = ToFloat(SampleSphere(u.direction));
+  const EmissionDisk disk(extent_, wi);
+  LeSample sample;
+  sample.ray = Ray{disk.Sample(u.position), -wi};
+  sample.Le = L_;
+  sample.pdfPos = 1 / disk.area;
+  sample.pdfDir = kSpherePdf;
+  return sample;
+}
+
+LePdf UniformEnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
+  return {EmissionDisk(extent_, -ray.d).Pdf(ray.o), kSpherePdf};
+}
+
+LeRandom UniformEnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
+  LeRandom u;
+  u.position = EmissionDisk(extent_, -ray.d).Invert(ray.o);
+  u.direction = InvertSphere(ToDouble(-ray.d));
+  return u;
+}
+
+}  // namespace dapple

@@ -1,0 +1,80 @@
+// Light from all around: an image of the environment, or one radiance from everywhere.
+//
+// pbrt: `LightSource "infinite"`. One table gives the directions both of `Sample_Li` and of `Sample_Le`; emitted rays
+// start on a disk across the scene (emission_disk.h), so that the power is the integral of L(w) A(w).
+#pragma once
+
+#include "lights/environment_map.h"
+#include "lights/light.h"
+#include "src/base/transform.h"
+
+namespace dapple {
+
+class EnvironmentLight final : public Light {
+ public:
+  using Mapping = EnvironmentMapping;
+
+  /// `image` as `EnvironmentMap` takes it; `RepairEnvironment` makes it so. Of `lightToRender` the nearest rotation (or
+  /// rotation with reflection) counts: radiance does not depend on lengths.
+  EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale, Mapping mapping);
+
+  /// See `EnvironmentMap::Repair`; warn where `*repairedPixels` is not 0.
+  static Image RepairEnvironment(const Image& image, int64_t* repairedPixels) {
+    return EnvironmentMap::Repair(image, repairedPixels);
+  }
+
+  std::string_view Name() const override { return "infinite"; }
+  bool IsInfinite() const override { return true; }
+  void Prepare(const SceneExtent& extent) override { extent_ = extent; }
+  Color Power() const override;
+  double ImportanceAt(const LightContext& at) const override;
+
+  std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override;
+  double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
+  LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
+
+  std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
+  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
+  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+
+  Color Le(const Ray& ray) const override;
+
+  const EnvironmentMap& Map() const { return map_; }
+
+ private:
+  Vec3 ToRender(const Vec3d& w) const;
+  Vec3d ToMap(const Vec3& w) const;
+
+  EnvironmentMap map_;
+  Vec3d axes_[3];  // the map's x, y and z in render space
+  SceneExtent extent_;
+};
+
+/// The same radiance from everywhere. Toward a surface that light does not cross, directions are drawn by the cosine.
+class UniformEnvironmentLight final : public Light {
+ public:
+  explicit UniformEnvironmentLight(const Color& L) : L_(L) {}
+
+  std::string_view Name() const override { return "infinite"; }
+  bool IsInfinite() const override { return true; }
+  void Prepare(const SceneExtent& extent) override { extent_ = extent; }
+  /// 4 pi L times the area of the disk.
+  Color Power() const override;
+  double ImportanceAt(const LightContext& at) const override;
+
+  std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override;
+  double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
+  LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
+
+  std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
+  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
+  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+
+  Color Le(const Ray&) const override { return L_; }
+
+ private:
+  Color L_;
+  SceneExtent extent_;
+};
+
+}  // namespace dapple

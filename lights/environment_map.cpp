@@ -1,0 +1,247 @@
+#include "lights/environment_map.h"
+
+#include <cmath>
+#include <limits>
+
+#include "lights/equal_area_mapping.h"
+#include "lights/light_math.h"
+#include "src/base/error.h"
+#include "src/base/numerics.h"
+#include "src/base/parallel.h"
+#include "src/sampling/warps.h"
+
+namespace dapple {
+
+namespace {
+
+constexpr int64_t kRowsPerChunk = 16;
+
+bool IsRadiance(const Color& c) { return c.IsFinite() && c.r >= 0 && c.g >= 0 && c.b >= 0; }
+
+/// The pixel that continues the image beyond its border, by less than its size.
+Vec2i Wrapped(EnvironmentMapping mapping, int x, int y, int width, int height) {
+  if (mapping == EnvironmentMapping::LatLong) {
+    return {(x + width) % width, std::clamp(y, 0, height - 1)};
+  }
+  // Each edge of the octahedral square is glued to itself, mirrored at its middle.
+  if (x < 0 || x >= width) {
+    x = x < 0 ? -1 - x : 2 * width - 1 - x;
+    y = height - 1 - y;
+  }
+  if (y < 0 || y >= height) {
+    y = y < 0 ? -1 - y : 2 * height - 1 - y;
+    x = width - 1 - x;
+  }
+  return {x, y};
+}
+
+/// (1 - cos theta) / 2 of a unit vector, without cancellation near +z.
+double HaversineOf(const Vec3d& w) { return w.z > 0 ? (w.x * w.x + w.y * w.y) / (2 * (1 + w.z)) : (1 - w.z) / 2; }
+
+Color Bilinear(const Color (&c)[4], const Vec2d& t) {
+  const float x = static_cast<float>(t.x), y = static_cast<float>(t.y);
+  return Lerp(y, Lerp(x, c[0], c[1]), Lerp(x, c[2], c[3]));
+}
+
+double Importance(const Color& c) { return static_cast<double>(c.MaxComponent()); }
+
+}  // namespace
+
+EnvironmentMap::EnvironmentMap(const Image& image, EnvironmentMapping mapping, const Color& scale)
+    : mapping_(mapping), width_(image.Width()), height_(image.Height()) {
+  if (width_ < 1 || height_ < 1) throw Error("environment map without pixels: expected at least one");
+  if (mapping == EnvironmentMapping::EqualArea && width_ != height_) {
+    throw Error("environment map of " + std::to_string(width_) + " x " + std::to_string(height_) +
+                " pixels: expected a square image in the equal-area mapping");
+  }
+  FillLattice(image, scale);
+  BuildTable();
+}
+
+Image EnvironmentMap::Repair(const Image& image, int64_t* repairedPixels) {
+  float largest = 0;
+  for (int y = 0; y < image.Height(); ++y) {
+    for (int x = 0; x < image.Width(); ++x) {
+      const Color c = image.ColorAt(x, y);
+      for (int i = 0; i < Color::kComponents; ++i) {
+        if (std::isfinite(c[i])) largest = std::max(largest, c[i]);
+      }
+    }
+  }
+  Image repaired = Image::Rgb(image.Width(), image.Height());
+  *repairedPixels = 0;
+  for (int y = 0; y < image.Height(); ++y) {
+    for (int x = 0; x < image.Width(); ++x) {
+      Color c = image.ColorAt(x, y);
+      if (!IsRadiance(c)) {
+        // std::max keeps its first argument where the second is NaN.
+        c = Map(c, [largest](float v) { return std::min(std::max(0.f, v), largest); });
+        ++*repairedPixels;
+      }
+      repaired.SetColor(x, y, c);
+    }
+  }
+  return repaired;
+}
+
+void EnvironmentMap::FillLattice(const Image& image, const Color& scale) {
+  const auto texel = [&](int x, int y) {
+    const Vec2i p = Wrapped(mapping_, x, y, width_, height_);
+    return Map(image.ColorAt(p.x, p.y) * scale, [](float v) { return std::min(v, std::numeric_limits<float>::max()); });
+  };
+  lattice_.resize(static_cast<size_t>(width_ + 2) * static_cast<size_t>(height_ + 2));
+  ParallelForChunks(height_ + 2, kRowsPerChunk, [&](int64_t begin, int64_t end) {
+    for (int j = static_cast<int>(begin); j < end; ++j) {
+      // The first and last lines are the square's edges, half-way between a texel and the one that continues it.
+      const bool yEdge = j == 0 || j == height_ + 1;
+      for (int i = 0; i < width_ + 2; ++i) {
+        const bool xEdge = i == 0 || i == width_ + 1;
+        const int x0 = i - 1, y0 = j - 1;
+        const int x1 = i == 0 ? 0 : (xEdge ? width_ - 1 : x0), y1 = j == 0 ? 0 : (yEdge ? height_ - 1 : y0);
+        Color value = texel(x1, y1);
+        if (xEdge) value = value * 0.5f + texel(x0, y1) * 0.5f;
+        if (yEdge) {
+          Color beyond = texel(x1, y0);
+          if (xEdge) beyond = beyond * 0.5f + texel(x0, y0) * 0.5f;
+          value = value * 0.5f + beyond * 0.5f;
+        }
+        lattice_[static_cast<size_t>(j) * static_cast<size_t>(width_ + 2) + static_cast<size_t>(i)] = value;
+      }
+    }
+  });
+}
+
+void EnvironmentMap::BuildTable() {
+  if (mapping_ == EnvironmentMapping::LatLong) {
+    for (int j = 0; j < height_ + 2; ++j) haversine_.push_back(Sqr(std::sin(kPiD / 2 * LatticeY(j))));
+    haversine_.back() = 1;
+  }
+  const int columns = width_ + 1, rows = height_ + 1;
+  std::vector<double> weights(static_cast<size_t>(columns) * static_cast<size_t>(rows));
+  std::vector<Vec3d> rowIntegrals(static_cast<size_t>(rows));
+  ParallelForChunks(rows, kRowsPerChunk, [&](int64_t begin, int64_t end) {
+    for (int y = static_cast<int>(begin); y < end; ++y) {
+      const Vec2d integrals = RowIntegrals(y);
+      Vec3d sum(0);
+      for (int x = 0; x < columns; ++x) {
+        const double halfWidth = (LatticeX(x + 1) - LatticeX(x)) / 2;
+        const double top = halfWidth * integrals.x, bottom = halfWidth * integrals.y;
+        double w[4];
+        Weights({x, y}, w);
+        weights[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)] =
+            top * (w[0] + w[1]) + bottom * (w[2] + w[3]);
+        for (int i = 0; i < Color::kComponents; ++i) {
+          const auto corner = [&](int dx, int dy) { return static_cast<double>(Corner(x + dx, y + dy)[i]); };
+          sum[i] += top * (corner(0, 0) + corner(1, 0)) + bottom * (corner(0, 1) + corner(1, 1));
+        }
+      }
+      rowIntegrals[static_cast<size_t>(y)] = sum;
+    }
+  });
+  table_ = Distribution2D(std::span<const double>(weights), columns, rows);
+  Vec3d integral(0);
+  for (const Vec3d& row : rowIntegrals) integral += row;
+  integral_ = Color(FiniteColor(Color(1), integral.x).r, FiniteColor(Color(1), integral.y).r,
+                    FiniteColor(Color(1), integral.z).r);
+}
+
+Vec2d EnvironmentMap::RowIntegrals(int y) const {
+  const double low = LatticeY(y), high = LatticeY(y + 1);
+  if (mapping_ == EnvironmentMapping::EqualArea) return Vec2d(2 * kPiD * (high - low));
+  // With m the middle and d half the height in theta: the integrals of (1/2 -+ (theta - m) / (2 d)) sin theta.
+  const double m = kPiD * (low + high) / 2, d = kPiD * (high - low) / 2;
+  const double even = std::sin(m) * std::sin(d), odd = std::cos(m) * (std::sin(d) - d * std::cos(d)) / d;
+  return Vec2d(even - odd, even + odd) * (2 * kPiD);
+}
+
+double EnvironmentMap::CellSolidAngle(const Vec2i& cell) const {
+  const double width = LatticeX(cell.x + 1) - LatticeX(cell.x);
+  if (mapping_ == EnvironmentMapping::EqualArea) {
+    return 4 * kPiD * width * (LatticeY(cell.y + 1) - LatticeY(cell.y));
+  }
+  const size_t j = static_cast<size_t>(cell.y);
+  return 4 * kPiD * width * (haversine_[j + 1] - haversine_[j]);
+}
+
+void EnvironmentMap::Weights(const Vec2i& cell, double (&w)[4]) const {
+  w[0] = Importance(Corner(cell.x, cell.y));
+  w[1] = Importance(Corner(cell.x + 1, cell.y));
+  w[2] = Importance(Corner(cell.x, cell.y + 1));
+  w[3] = Importance(Corner(cell.x + 1, cell.y + 1));
+}
+
+double EnvironmentMap::LatticeX(int i) const { return i == 0 ? 0 : (i > width_ ? 1 : (i - 0.5) / width_); }
+double EnvironmentMap::LatticeY(int j) const { return j == 0 ? 0 : (j > height_ ? 1 : (j - 0.5) / height_); }
+
+EnvironmentMap::Place EnvironmentMap::PlaceOf(const Vec3d& w) const {
+  const Vec3d unit = Normalize(w);
+  const bool isLatLong = mapping_ == EnvironmentMapping::LatLong;
+  const Vec2d p = isLatLong ? Vec2d(TurnOf(unit.x, unit.y), std::atan2(std::hypot(unit.x, unit.y), unit.z) / kPiD)
+                            : EqualAreaSphereToSquare(unit);
+  Place place;
+  place.cell = Vec2i(std::clamp(static_cast<int>(p.x * width_ + 0.5), 0, width_),
+                     std::clamp(static_cast<int>(p.y * height_ + 0.5), 0, height_));
+  const double x0 = LatticeX(place.cell.x), y0 = LatticeY(place.cell.y);
+  place.t = Vec2d(std::clamp((p.x - x0) / (LatticeX(place.cell.x + 1) - x0), 0.0, 1.0),
+                  std::clamp((p.y - y0) / (LatticeY(place.cell.y + 1) - y0), 0.0, 1.0));
+  place.s = place.t;
+  if (isLatLong) {
+    const size_t j = static_cast<size_t>(place.cell.y);
+    const double share = (HaversineOf(unit) - haversine_[j]) / (haversine_[j + 1] - haversine_[j]);
+    place.s.y = std::clamp(share, 0.0, 1.0);
+  }
+  return place;
+}
+
+Vec3d EnvironmentMap::DirectionOf(const Vec2i& cell, const Vec2d& s) const {
+  const double x = Lerp(s.x, LatticeX(cell.x), LatticeX(cell.x + 1));
+  if (mapping_ == EnvironmentMapping::EqualArea) {
+    return EqualAreaSquareToSphere({x, Lerp(s.y, LatticeY(cell.y), LatticeY(cell.y + 1))});
+  }
+  const size_t j = static_cast<size_t>(cell.y);
+  const double haversine = std::min(Lerp(s.y, haversine_[j], haversine_[j + 1]), 1.0);
+  const double sinTheta = 2 * SafeSqrt(haversine * (1 - haversine)), phi = 2 * kPiD * x;
+  return {sinTheta * std::cos(phi), sinTheta * std::sin(phi), 1 - 2 * haversine};
+}
+
+Color EnvironmentMap::Radiance(const Vec3d& w) const {
+  const Place place = PlaceOf(w);
+  const Vec2i& c = place.cell;
+  return Bilinear({Corner(c.x, c.y), Corner(c.x + 1, c.y), Corner(c.x, c.y + 1), Corner(c.x + 1, c.y + 1)}, place.t);
+}
+
+EnvironmentValue EnvironmentMap::Evaluate(const Vec3d& w) const {
+  const Place place = PlaceOf(w);
+  const Vec2i& c = place.cell;
+  EnvironmentValue value;
+  value.L = Bilinear({Corner(c.x, c.y), Corner(c.x + 1, c.y), Corner(c.x, c.y + 1), Corner(c.x + 1, c.y + 1)}, place.t);
+  if (IsBlack()) return value;
+  const double probability = table_.Probability(c);
+  if (probability == 0) return value;
+  double weights[4];
+  Weights(c, weights);
+  value.pdf = probability / CellSolidAngle(c) * BilinearPdf(place.s, weights);
+  return value;
+}
+
+Vec3d EnvironmentMap::Sample(const Vec2d& u) const {
+  const DiscreteSample2D drawn = table_.SampleDiscrete(u);
+  double weights[4];
+  Weights(drawn.cell, weights);
+  return DirectionOf(drawn.cell, SampleBilinear(drawn.u, weights));
+}
+
+Vec2d EnvironmentMap::Invert(const Vec3d& w) const {
+  const Place place = PlaceOf(w);
+  double weights[4];
+  Weights(place.cell, weights);
+  if (table_.Probability(place.cell) == 0) return table_.InvertDiscrete(place.cell, Vec2d(0));
+  return table_.InvertDiscrete(place.cell, InvertBilinear(place.s, weights));
+}
+
+int64_t EnvironmentMap::MemoryBytes() const {
+  return table_.MemoryBytes() +
+         static_cast<int64_t>(lattice_.size() * sizeof(Color) + haversine_.size() * sizeof(double));
+}
+
+}  // namespace dapple

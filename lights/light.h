@@ -1,0 +1,123 @@
+// The interface of lights, both sides of each: a direction toward the light from a point, and a ray that leaves the
+// light.
+//
+// Each draw has its density and its inverse. Densities of directions are per solid angle, of origins per area (on the
+// light's surface, or on the disk across the scene that environments and distant lights emit from), unless the flag
+// says that the choice is discrete; then the density is 1 and stands for the whole of it. Flux identity: the mean of Le
+// |cos| / (pdfPos pdfDir) over emitted rays is `Power()`, where cos = 1 without a surface.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "src/base/color.h"
+#include "src/geometry/interaction.h"
+#include "src/geometry/ray.h"
+
+namespace dapple {
+
+/// Where light is asked for.
+struct LightContext {
+  Vec3 p;
+  Vec3 ns{0, 0, 0};  ///< shading normal, turned to the side that is looked from; zero where there is no surface
+  bool transmissive = false;  ///< light from behind counts too
+
+  explicit LightContext(const Vec3& point) : p(point) {}
+  LightContext(const Vec3& point, const Vec3& normal, bool isTransmissive)
+      : p(point), ns(normal), transmissive(isTransmissive) {}
+};
+
+/// Light that may arrive at a point.
+struct LiSample {
+  Color L;           ///< radiance; for a delta light, irradiance on a plane across wi
+  Vec3 wi;           ///< unit direction toward the light
+  double pdf = 0;    ///< per solid angle; 1 for a delta light
+  Vec3 p;            ///< the point on the light; outside the scene for infinite lights
+  float pError = 0;  ///< as in SurfaceInteraction
+  Vec3 n{0, 0, 0};   ///< its normal; zero where there is no surface
+  bool isDelta = false;
+};
+
+/// A ray that leaves a light.
+struct LeSample {
+  Ray ray;             ///< starts on the light, already moved off its surface
+  Vec3 n{0, 0, 0};     ///< normal at the origin; zero where there is no surface
+  float cosTheta = 1;  ///< |n . d|; 1 where there is no surface
+  Color Le;            ///< radiance; intensity for a point-like origin; irradiance for a distant direction
+  double pdfPos = 0;   ///< per area; 1 for a discrete origin
+  double pdfDir = 0;   ///< per solid angle; 1 for a discrete direction
+  bool deltaPos = false;
+  bool deltaDir = false;
+
+  /// The flux that this ray stands for.
+  Color Flux() const { return Le * static_cast<float>(cosTheta / (pdfPos * pdfDir)); }
+};
+
+struct LePdf {
+  double position = 0;   ///< as LeSample::pdfPos
+  double direction = 0;  ///< as LeSample::pdfDir
+};
+
+/// The random numbers of an emitted ray: which part of the light, where on it, which way.
+struct LeRandom {
+  double part = 0;
+  Vec2d position{0, 0};
+  Vec2d direction{0, 0};
+};
+
+/// The random numbers of a direction toward the light: which part of it, and where.
+struct LiRandom {
+  double part = 0;
+  Vec2d direction{0, 0};
+};
+
+/// What the scene tells its lights before the first sample: a sphere around all that can be hit.
+struct SceneExtent {
+  Vec3 center{0, 0, 0};
+  float radius = 1;
+};
+
+class Light {
+ public:
+  virtual ~Light() = default;
+
+  /// "point", "area", ...: the name in files and reports.
+  virtual std::string_view Name() const = 0;
+  /// A point or a direction of no extent: `Pdf_Li` is zero everywhere, and no ray finds it.
+  virtual bool IsDelta() const { return false; }
+  /// Rays that leave the scene find it; `Le` answers.
+  virtual bool IsInfinite() const { return false; }
+
+  /// Called once, before all else.
+  virtual void Prepare(const SceneExtent&) {}
+
+  /// Total emitted flux, as `Sample_Le` emits it, in W (scene units).
+  virtual Color Power() const = 0;
+  /// About the irradiance that the light may bring to a point, for the choice among lights; in the unit of `Power` over
+  /// area where the light knows better than its power. Zero only where surely none of its light arrives.
+  virtual double ImportanceAt(const LightContext&) const { return static_cast<double>(Power().MaxComponent()); }
+
+  /// A direction toward the light; nothing where none of its light arrives (whatever stands between).
+  virtual std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const = 0;
+  /// The density with which `Sample_Li` gives the direction `wi`, per solid angle. `hit` is the point of the light that
+  /// `wi` meets; null for infinite lights. Traces nothing. 0 for delta lights.
+  virtual double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const = 0;
+  /// The random numbers with which `Sample_Li` gives the direction `wi`.
+  virtual LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const = 0;
+
+  /// A ray that leaves the light, distributed by emitted radiance times cosine as exactly as the light knows how;
+  /// nothing where the light is black.
+  virtual std::optional<LeSample> Sample_Le(const LeRandom& u) const = 0;
+  /// The densities with which `Sample_Le` gives the ray. `n` is the normal at its origin, zero where there is no
+  /// surface. For infinite lights the origin may be any point along the ray: its line counts.
+  virtual LePdf Pdf_Le(const Ray& ray, const Vec3& n) const = 0;
+  /// The random numbers with which `Sample_Le` gives the ray.
+  virtual LeRandom Invert_Le(const Ray& ray, const Vec3& n) const = 0;
+
+  /// Radiance that an infinite light sends back along a ray which left the scene; black for others.
+  virtual Color Le(const Ray&) const { return Color(); }
+  /// Radiance that an area light sends from the point `hit` along the unit vector `w`; black for others.
+  virtual Color L(const SurfaceInteraction&, const Vec3& /*w*/) const { return Color(); }
+};
+
+}  // namespace dapple

@@ -1,0 +1,24 @@
+// Numbers as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace dapple {
+
+/// "0", "812", "12.3 k", "4.56 M": three digits and a prefix; `value` >= 0.
+std::string FormatCount(double value);
+
+/// "0.42 s", "12.3 s", "4:05", "3:04:05"; `seconds` >= 0.
+std::string FormatDuration(double seconds);
+
+/// "812 B", "4.56 MB" (powers of 1000).
+std::string FormatBytes(double bytes);
+
+/// "1 pass", "2 passes".
+std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view many);
+
+}  // namespace dapple

@@ -1,0 +1,76 @@
+// The `dapple` program: finds the subcommand, runs it, and turns what goes wrong into one line and an exit code.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <new>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "src/app/command.h"
+#include "src/app/format.h"
+#include "src/base/error.h"
+#include "src/render/version.h"
+
+namespace dapple {
+
+namespace {
+
+constexpr const char* kFooter =
+    "\n`dapple SCENE` is short for `dapple render SCENE`.\n"
+    "Exit codes: 0 success, 1 failure (one line on the error stream says what), 2 wrong usage,\n"
+    "128 + N where signal N ended a render early; its picture is written.";
+
+/// The arguments, without the program's name, with "render" put in front where no subcommand is named.
+std::vector<std::string> Arguments(int argc, char** argv) {
+  constexpr std::array<std::string_view, 5> kKnown{"render", "info", "-h", "--help", "--version"};
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool isNamed = !arguments.empty() && std::find(kKnown.begin(), kKnown.end(), arguments[0]) != kKnown.end();
+  if (!arguments.empty() && !isNamed) arguments.insert(arguments.begin(), "render");
+  return arguments;
+}
+
+int Parse(CLI::App& program, std::vector<std::string> arguments) {
+  std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them last first
+  try {
+    program.parse(std::move(arguments));
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kExitSuccess : kExitUsage;
+  }
+  return -1;
+}
+
+int Run(int argc, char** argv) {
+  CLI::App program("Dapple renders light from the light's side: photon mapping of pbrt scenes.", "dapple");
+  program.set_version_flag("--version", fmt::format("dapple {}, {}", Version(), InstructionSet()));
+  program.require_subcommand(1);
+  program.footer(kFooter);
+  program.failure_message([](const CLI::App* app, const CLI::Error& error) {
+    const CLI::App* const used = app->get_subcommands().empty() ? app : app->get_subcommands().front();
+    const std::string name = used == app ? "dapple" : "dapple " + used->get_name();
+    return fmt::format("error: {}\nSee `{} --help`.\n", error.what(), name);
+  });
+  Action action;
+  AddRenderCommand(program, &action);
+  AddInfoCommand(program, &action);
+  if (const int code = Parse(program, Arguments(argc, argv)); code >= 0) return code;
+  return action();
+}
+
+}  // namespace
+
+}  // namespace dapple
+
+int main(int argc, char** argv) {
+  try {
+    return dapple::Run(argc, argv);
+  } catch (const dapple::Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "error: the memory does not suffice\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+  }
+  return dapple::kExitFailure;
+}

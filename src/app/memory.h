@@ -1,0 +1,11 @@
+// How much memory this process has taken.
+#pragma once
+
+#include <cstdint>
+
+namespace dapple {
+
+/// The most that was resident at one time so far, in bytes.
+int64_t PeakMemoryBytes();
+
+}  // namespace dapple

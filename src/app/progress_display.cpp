@@ -1,0 +1,76 @@
+#include "src/app/progress_display.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "src/app/format.h"
+
+namespace dapple {
+
+namespace {
+
+constexpr int kBarWidth = 24;
+constexpr std::chrono::milliseconds kInterval{150};
+
+/// "12 passes, 3.41 M rays/s, 1.20 M photons/s, noise 0.0031, 0:12 left"
+std::string Describe(const RenderProgress& progress) {
+  if (progress.passesDone == 0) return "prepared";
+  std::string text = FormatNumberOf(progress.passesDone, "pass", "passes");
+  const double seconds = std::max(progress.seconds, 1e-9);
+  text += fmt::format(", {} rays/s", FormatCount(static_cast<double>(progress.stats.Rays()) / seconds));
+  if (progress.stats.photonsEmitted > 0) {
+    const double photons = static_cast<double>(progress.stats.photonsEmitted);
+    text += fmt::format(", {} photons/s", FormatCount(photons / seconds));
+  }
+  if (const auto noise = progress.film->NoiseEstimate()) text += fmt::format(", noise {:.2g}", *noise);
+  if (progress.secondsLeft && progress.fraction < 1)
+    text += fmt::format(", {} left", FormatDuration(*progress.secondsLeft));
+  return text;
+}
+
+int TerminalWidth() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+ProgressDisplay::ProgressDisplay() : isTerminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressDisplay::~ProgressDisplay() {
+  if (isTerminal_ && lastShown_ != Clock::time_point{}) std::fputc('\n', stderr);
+}
+
+void ProgressDisplay::Show(const RenderProgress& progress) {
+  if (isTerminal_) {
+    ShowBar(progress);
+  } else {
+    ShowLine(progress);
+  }
+}
+
+void ProgressDisplay::ShowBar(const RenderProgress& progress) {
+  // Short passes come by the thousand; a terminal need not see them all, but the last.
+  const Clock::time_point now = Clock::now();
+  if (now - lastShown_ < kInterval && progress.fraction < 1) return;
+  lastShown_ = now;
+  const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
+  std::string line = fmt::format("[{:=<{}}{:{}}] {}", "", filled, "", kBarWidth - filled, Describe(progress));
+  line.resize(std::min(line.size(), static_cast<size_t>(TerminalWidth() - 1)));
+  fmt::print(stderr, "\r{}\x1b[K", line);
+  std::fflush(stderr);
+}
+
+void ProgressDisplay::ShowLine(const RenderProgress& progress) {
+  const int tenths = static_cast<int>(std::floor(progress.fraction * 10 + 1e-9));
+  if (tenths <= tenthsShown_) return;
+  tenthsShown_ = tenths;
+  fmt::print(stderr, "{:3} %: {}\n", tenths * 10, Describe(progress));
+}
+
+}  // namespace dapple

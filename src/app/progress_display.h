@@ -1,0 +1,32 @@
+// How a render shows its progress: a bar that is rewritten on a terminal, a plain line per tenth elsewhere.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "src/render/driver.h"
+
+namespace dapple {
+
+/// Writes to the error stream. The bar's line is ended by the destructor, so that what follows begins on its own line.
+class ProgressDisplay {
+ public:
+  ProgressDisplay();
+  ~ProgressDisplay();
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  void Show(const RenderProgress& progress);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void ShowBar(const RenderProgress& progress);
+  void ShowLine(const RenderProgress& progress);
+
+  bool isTerminal_;
+  Clock::time_point lastShown_{};
+  int tenthsShown_ = 0;
+};
+
+}  // namespace dapple

@@ -1,0 +1,158 @@
+// `dapple render`: reads a scene, renders it within a budget, writes the picture.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Option.hpp>
+
+#include "src/app/command.h"
+#include "src/app/format.h"
+#include "src/app/memory.h"
+#include "src/app/progress_display.h"
+#include "src/app/scene_options.h"
+#include "src/app/signals.h"
+#include "src/base/parallel.h"
+#include "src/render/driver.h"
+#include "src/render/output.h"
+
+namespace dapple {
+
+namespace {
+
+struct RenderOptions : SceneOptions {
+  std::vector<std::string> outputs;
+  bool isQuiet = false;
+  bool recordsSeconds = false;
+};
+
+/// "ring.pbrt" and "ring.pbrt.gz" are both "ring".
+std::string SceneName(const std::string& path) {
+  std::filesystem::path name = std::filesystem::path(path).filename();
+  if (name.extension() == ".gz") name = name.stem();
+  return name.stem().string();
+}
+
+/// In the current folder: the name that the scene's film gives, or the scene's own, as an EXR file.
+std::string DefaultOutput(const std::string& scene, const RenderSettings& settings) {
+  const std::filesystem::path named = std::filesystem::path(settings.outputFile).filename();
+  return (named.empty() ? SceneName(scene) : named.stem().string()) + ".exr";
+}
+
+std::string Rate(int64_t count, double seconds) {
+  return FormatCount(static_cast<double>(count) / std::max(seconds, 1e-9)) + "/s";
+}
+
+void PrintStart(const RenderOptions& options, const Scene& scene, const RenderPlan& plan) {
+  const Vec2i& resolution = scene.Settings().resolution;
+  fmt::print(stderr, "{}: {} x {}, {} ({}), {}\n", options.scene, resolution.x, resolution.y, plan.choice.name,
+             plan.choice.reason, FormatNumberOf(ThreadCount(), "thread", "threads"));
+}
+
+void PrintSummary(const RenderResult& result, const Film& film) {
+  const PassStats& stats = result.stats;
+  const auto count = [](int64_t n) { return FormatCount(static_cast<double>(n)); };
+  fmt::print("{} in {} (of which preparation {})\n", FormatNumberOf(result.passes, "pass", "passes"),
+             FormatDuration(result.seconds), FormatDuration(result.prepareSeconds));
+  fmt::print("rays      {} ({}): {} camera, {} shadow, {} photon\n", count(stats.Rays()),
+             Rate(stats.Rays(), result.seconds), count(stats.cameraRays), count(stats.shadowRays),
+             count(stats.photonRays));
+  if (stats.photonsEmitted > 0) {
+    fmt::print("photons   {} emitted ({}), {} stored\n", count(stats.photonsEmitted),
+               Rate(stats.photonsEmitted, result.seconds), count(stats.photonsStored));
+  }
+  if (stats.gathers > 0) {
+    fmt::print("gathers   {}, {:.3g} photons each\n", count(stats.gathers),
+               static_cast<double>(stats.photonsGathered) / static_cast<double>(stats.gathers));
+  }
+  if (stats.splats > 0) fmt::print("splats    {}\n", count(stats.splats));
+  if (const auto noise = film.NoiseEstimate()) fmt::print("noise     relative MSE about {:.2g}\n", *noise);
+  fmt::print("memory    {} at its peak\n", FormatBytes(static_cast<double>(PeakMemoryBytes())));
+}
+
+/// A picture of fewer samples than were paid for must not go unnoticed, however quiet the render.
+void WarnOfNonFinite(const Film& film) {
+  if (film.NonFiniteCount() == 0) return;
+  fmt::print(stderr, "warning: {} left out: infinite, not a number, or too large\n",
+             FormatNumberOf(film.NonFiniteCount(), "sample was", "samples were"));
+}
+
+RenderRecord MakeRecord(const RenderOptions& options, const RenderPlan& plan, const RenderResult& result) {
+  RenderRecord record;
+  record.scene = std::filesystem::path(options.scene).filename().string();
+  record.integrator = plan.choice.name;
+  record.seed = plan.seed;
+  record.passes = result.passes;
+  if (plan.budget.seconds || options.recordsSeconds) record.seconds = result.seconds;
+  return record;
+}
+
+RenderResult RenderWithProgress(const Scene& scene, const RenderPlan& plan, const StopSignals& signals, bool isQuiet,
+                                Film& film) {
+  RenderHooks hooks;
+  hooks.stop = &signals.Flag();
+  std::optional<ProgressDisplay> display;
+  if (!isQuiet) {
+    display.emplace();
+    hooks.onProgress = [&](const RenderProgress& progress) { display->Show(progress); };
+  }
+  const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
+  return Render(scene, seed, *plan.integrator, film, plan.budget, hooks);
+}
+
+int RunRender(RenderOptions options) {
+  for (const std::string& output : options.outputs) CheckOutput(output);
+  const ThreadLimit threads(options.threads);
+  Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  const LoadedScene loaded = Load(options, diagnostics);
+  const Scene& scene = *loaded.scene;
+  if (options.outputs.empty()) {
+    options.outputs.push_back(DefaultOutput(options.scene, scene.Settings()));
+    CheckOutput(options.outputs[0]);
+  }
+  const RenderPlan plan = MakePlan(scene, options);
+  if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
+    diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
+  }
+  if (!options.isQuiet) PrintStart(options, scene, plan);
+
+  const StopSignals signals;
+  Film film(scene.Settings().resolution, scene.Settings().crop, scene.Settings().filter);
+  const RenderResult result = RenderWithProgress(scene, plan, signals, options.isQuiet, film);
+  if (film.PassCount() == 0) {
+    fmt::print(stderr, "stopped before the first pass; no picture is written\n");
+    return 128 + signals.Signal();
+  }
+  const Image picture = ToPicture(film, scene.Settings());
+  const ImageMetadata metadata = ToMetadata(MakeRecord(options, plan, result));
+  for (const std::string& output : options.outputs) {
+    WriteOutput(output, picture, metadata);
+    if (!options.isQuiet) fmt::print("{}\n", output);
+  }
+  WarnOfNonFinite(film);
+  if (!options.isQuiet) PrintSummary(result, film);
+  return result.stopped ? 128 + signals.Signal() : kExitSuccess;
+}
+
+}  // namespace
+
+void AddRenderCommand(CLI::App& program, Action* action) {
+  CLI::App* const command = program.add_subcommand("render", "Render a scene to an image file");
+  const auto options = std::make_shared<RenderOptions>();
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "The picture: .exr (linear, all digits) or .png (sRGB); may be given several times. By default the "
+                   "name that the scene gives, as .exr in the current folder")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  options->AddTo(command);
+  command->add_flag("--record-seconds", options->recordsSeconds,
+                    "Record in the file how long the render took, with --passes too; else the same seed and passes "
+                    "give the same file");
+  command->add_flag("--quiet", options->isQuiet, "No progress and no summary; warnings and errors only");
+  command->callback([options, action] { *action = [options] { return RunRender(*options); }; });
+}
+
+}  // namespace dapple

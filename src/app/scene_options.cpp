@@ -1,0 +1,163 @@
+#include "src/app/scene_options.h"
+
+#include <limits>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "src/io/pbrt_parser.h"
+
+namespace dapple {
+
+namespace {
+
+/// The numbers of `text`, which `separator` parts; nothing where it holds anything else.
+template <typename T>
+std::optional<std::vector<T>> SplitNumbers(const std::string& text, char separator) {
+  std::vector<T> numbers;
+  std::istringstream stream(text);
+  for (T number; stream >> number;) {
+    numbers.push_back(number);
+    if (stream.eof()) return numbers;
+    if (stream.get() != separator) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+Vec2i ParseResolution(const std::string& text) {
+  const auto sizes = SplitNumbers<int>(text, 'x');
+  if (!sizes || sizes->size() != 2 || (*sizes)[0] < 1 || (*sizes)[1] < 1) {
+    throw CLI::ValidationError("--resolution",
+                               fmt::format("expected WIDTHxHEIGHT in pixels, as in 640x480, not '{}'", text));
+  }
+  return {(*sizes)[0], (*sizes)[1]};
+}
+
+std::array<double, 4> ParseCrop(const std::string& text) {
+  const auto n = SplitNumbers<double>(text, ',');
+  const auto isFraction = [](double low, double high) { return low >= 0 && low < high && high <= 1; };
+  if (!n || n->size() != 4 || !isFraction((*n)[0], (*n)[1]) || !isFraction((*n)[2], (*n)[3])) {
+    throw CLI::ValidationError(
+        "--crop", fmt::format("expected x0,x1,y0,y1 as fractions of the picture, 0 <= x0 < x1 <= 1, not '{}'", text));
+  }
+  return {(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
+}
+
+void AddSceneGroup(CLI::App* command, SceneOptions* options) {
+  command->add_option("scene", options->scene, "The scene: a .pbrt or .pbrt.gz file")->required()->type_name("FILE");
+  const std::string group = "Scene";
+  command
+      ->add_option("--pbrt-version", options->pbrtVersion,
+                   "Read the file as of this version of pbrt; found from the text otherwise")
+      ->check(CLI::IsMember({3, 4}))
+      ->type_name("3|4")
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--resolution", [options](const std::string& text) { options->resolution = ParseResolution(text); },
+          "Size of the picture in pixels")
+      ->type_name("WxH")
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--crop", [options](const std::string& text) { options->crop = ParseCrop(text); },
+          "The part to render, in fractions of the picture")
+      ->type_name("X0,X1,Y0,Y1")
+      ->group(group);
+}
+
+void AddRenderGroup(CLI::App* command, SceneOptions* options) {
+  const std::string group = "Rendering (what is not given is the scene's)";
+  std::vector<std::string> names{"auto"};
+  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
+  command->add_option("--integrator", options->integrator, fmt::format("{}", fmt::join(names, ", ")))
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name("NAME")
+      ->group(group);
+  CLI::Option* const passes = command->add_option("--passes", options->passes, "Render N passes")
+                                  ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
+                                  ->type_name("N")
+                                  ->group(group);
+  command->add_option("--time", options->seconds, "Render for so long, to within a pass")
+      ->check(CLI::PositiveNumber.description(""))
+      ->excludes(passes)
+      ->type_name("SECONDS")
+      ->group(group);
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->type_name("N")->group(group);
+  command->add_option("--max-depth", options->maxDepth, "Scattering events on a path")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("N")
+      ->group(group);
+  command->add_option("--photons", options->photons, "Light paths a pass")
+      ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
+      ->type_name("N")
+      ->group(group);
+  command->add_option("--radius", options->radius, "Starting radius of photon lookups, in the scene's units")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("R")
+      ->group(group);
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads; 0: one a processor. The picture is the same with any number")
+      ->check(CLI::Range(0, kMaxThreads).description(""))
+      ->type_name("N")
+      ->group(group);
+}
+
+/// The first of the two that is there.
+template <typename T>
+std::optional<T> Either(const std::optional<T>& first, const std::optional<T>& second) {
+  return first ? first : second;
+}
+
+void SetBudget(const RenderSettings& settings, const SceneOptions& options, RenderPlan* plan) {
+  const bool hasIterations = plan->choice.name == "sppm" && settings.iterations;
+  if (options.seconds) {
+    plan->budget.seconds = options.seconds;
+    plan->budgetReason = "asked for";
+  } else if (options.passes) {
+    plan->budget.passes = options.passes;
+    plan->budgetReason = "asked for";
+  } else if (hasIterations || settings.samplesPerPixel) {
+    plan->budget.passes = hasIterations ? settings.iterations : settings.samplesPerPixel;
+    plan->budgetReason = hasIterations ? "the scene's iterations" : "the scene's samples a pixel";
+  } else {
+    plan->budget.passes = plan->integrator->DefaultPasses();
+    plan->budgetReason = "the integrator's default";
+  }
+}
+
+}  // namespace
+
+void SceneOptions::AddTo(CLI::App* command) {
+  AddSceneGroup(command, this);
+  AddRenderGroup(command, this);
+}
+
+LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
+  const SceneDescription description = ParsePbrtFile(options.scene, {.pbrtVersion = options.pbrtVersion}, diagnostics);
+  BuildOptions build;
+  build.resolution = options.resolution;
+  build.cropWindow = options.crop;
+  return {description.version, description.versionReason, BuildScene(description, build, diagnostics)};
+}
+
+RenderPlan MakePlan(const Scene& scene, const SceneOptions& options) {
+  const RenderSettings& settings = scene.Settings();
+  RenderPlan plan;
+  plan.choice = ResolveIntegrator(options.integrator, scene);
+  plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
+  plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
+  plan.options.radius = Either(options.radius, settings.radius);
+  plan.integrator = MakeIntegrator(plan.choice.name, plan.options);
+  plan.seed = Either(options.seed, settings.seed).value_or(0);
+  SetBudget(settings, options, &plan);
+  return plan;
+}
+
+}  // namespace dapple

@@ -1,0 +1,66 @@
+// What `render` and `info` share: the options that change a scene or how it is rendered, and the plan that follows.
+//
+//   SceneOptions options;
+//   options.AddTo(command);                         // before parsing
+//   const LoadedScene loaded = Load(options, diagnostics);
+//   const RenderPlan plan = MakePlan(*loaded.scene, options);
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "integrators/integrator.h"
+#include "src/io/build_scene.h"
+#include "src/render/driver.h"
+
+namespace dapple {
+
+/// More threads than any machine has processors would only take memory.
+inline constexpr int kMaxThreads = 1024;
+
+/// As the command line gives them; what is absent is the scene's.
+struct SceneOptions {
+  std::string scene;
+  int pbrtVersion = 0;  ///< 0: found from the file
+  std::optional<Vec2i> resolution;
+  std::optional<std::array<double, 4>> crop;  ///< x0, x1, y0, y1 as shares of the picture
+  std::string integrator;
+  std::optional<int> passes;
+  std::optional<double> seconds;
+  std::optional<int> seed;
+  std::optional<int> maxDepth;
+  std::optional<int> photons;
+  std::optional<double> radius;
+  int threads = 0;  ///< 0: one a processor
+
+  void AddTo(CLI::App* command);
+};
+
+/// A scene and what its file was.
+struct LoadedScene {
+  int version = 0;
+  std::string versionReason;
+  std::unique_ptr<Scene> scene;
+};
+
+/// Reads and builds the scene with the options' resolution, crop and version. Throws `Error`.
+LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics);
+
+/// How a scene will be rendered, and why so.
+struct RenderPlan {
+  IntegratorChoice choice;
+  IntegratorOptions options;
+  std::unique_ptr<Integrator> integrator;
+  RenderBudget budget;
+  std::string budgetReason;  ///< "the command line's", ...
+  int seed = 0;
+};
+
+/// The command line's values, else the scene's, else the integrator's. Throws `Error` for an unknown integrator.
+RenderPlan MakePlan(const Scene& scene, const SceneOptions& options);
+
+}  // namespace dapple

@@ -1,0 +1,48 @@
+#include "src/app/signals.h"
+
+#include <array>
+#include <string_view>
+
+#include <signal.h>
+#include <unistd.h>
+
+namespace dapple {
+
+namespace {
+
+// A signal handler gets no argument of ours, so what it sets must be global; only this file sees it.
+std::atomic<bool> stopFlag{false};
+std::atomic<int> stopSignal{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+
+void Handle(int signal) {
+  constexpr std::string_view kMessage = "\nstopping after this pass; once more to quit without a picture\n";
+  stopSignal = signal;
+  stopFlag = true;
+  // Nothing can be done here where the message cannot be written.
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  for (const int s : kSignals) ::signal(s, SIG_DFL);
+}
+
+}  // namespace
+
+StopSignals::StopSignals() {
+  stopFlag = false;
+  stopSignal = 0;
+  struct sigaction action {};
+  action.sa_handler = Handle;
+  action.sa_flags = SA_RESTART;
+  for (const int s : kSignals) sigaction(s, &action, nullptr);
+}
+
+StopSignals::~StopSignals() {
+  for (const int s : kSignals) ::signal(s, SIG_DFL);
+}
+
+const std::atomic<bool>& StopSignals::Flag() const { return stopFlag; }
+
+int StopSignals::Signal() const { return stopSignal; }
+
+}  // namespace dapple

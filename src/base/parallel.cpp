@@ -1,0 +1,44 @@
+#include "src/base/parallel.h"
+
+#include <algorithm>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace dapple {
+
+void ParallelForChunks(int64_t count, int64_t chunkSize, const std::function<void(int64_t, int64_t)>& body) {
+  const int64_t chunks = (count + chunkSize - 1) / chunkSize;
+  const auto loop = [&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int64_t>(0, chunks, 1),
+        [&](const tbb::blocked_range<int64_t>& range) {
+          for (int64_t chunk = range.begin(); chunk != range.end(); ++chunk)
+            body(chunk * chunkSize, std::min(count, (chunk + 1) * chunkSize));
+        },
+        tbb::simple_partitioner());
+  };
+  // TBB's own arena has one place a processor; where more threads are asked for, the loop needs a larger one.
+  if (ThreadCount() <= tbb::this_task_arena::max_concurrency()) return loop();
+  tbb::task_arena(ThreadCount()).execute(loop);
+}
+
+struct ThreadLimit::Control {
+  tbb::global_control control;
+};
+
+// Where more threads are asked for than there are processors, TBB needs a stated limit above its default.
+ThreadLimit::ThreadLimit(int threads)
+    : control_(new Control{
+          tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                              static_cast<size_t>(threads > 0 ? threads : tbb::info::default_concurrency()))}) {}
+
+ThreadLimit::~ThreadLimit() = default;
+
+int ThreadCount() {
+  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+}  // namespace dapple

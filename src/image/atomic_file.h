@@ -1,0 +1,14 @@
+// Writing a file so that a reader, a crash or a full disk never meets half of it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace dapple {
+
+/// Makes `bytes` the content of the file at `path`: a temporary file in the same folder is written, flushed to the disk
+/// and renamed. On failure the temporary is removed, an older file of that name is left as it was, and `Error` is
+/// thrown. A link is followed; what is no regular file (a device, a pipe) is written straight.
+void WriteFileAtomically(const std::string& path, std::string_view bytes);
+
+}  // namespace dapple

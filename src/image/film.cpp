@@ -1,0 +1,243 @@
+#include "src/image/film.h"
+
+#include <cmath>
+#include <cstring>
+#include <new>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "src/base/numerics.h"
+
+namespace dapple {
+
+namespace {
+
+// What stands before the sums in a serialised film. All little-endian, as memory is here.
+struct FilmHeader {
+  char mark[8];
+  uint32_t version;
+  int32_t filterKind;
+  int32_t width, height;
+  int32_t cropMinX, cropMinY, cropMaxX, cropMaxY;
+  double filterRadiusX, filterRadiusY, filterP, filterQ;
+  int64_t passes[2];
+  uint64_t nonFinite;
+};
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(FilmHeader) == 96 && std::is_trivially_copyable_v<FilmHeader>);
+
+constexpr char kMark[8] = {'D', 'A', 'P', 'P', 'L', 'E', 'F', 'M'};
+constexpr uint32_t kVersion = 1;
+
+// The most pixels that a filter can touch along one axis: its radius is at most 64.
+constexpr int kMaxFootprint = 130;
+
+void CheckSizes(const Vec2i& resolution, const PixelBounds& crop, const FileLocation& location) {
+  const bool fits = resolution.x >= 1 && resolution.y >= 1 && resolution.x <= kMaxFilmSide &&
+                    resolution.y <= kMaxFilmSide && PixelBounds{{0, 0}, resolution}.Contains(crop);
+  if (!fits || crop.IsEmpty() || crop.Area() > kMaxFilmPixels)
+    throw Error(location,
+                fmt::format("film of {} x {} pixels, crop from ({}, {}) to ({}, {}): expected 1 to {} pixels a "
+                            "side, a crop inside that is not empty, and at most {} pixels in it",
+                            resolution.x, resolution.y, crop.min.x, crop.min.y, crop.max.x, crop.max.y, kMaxFilmSide,
+                            kMaxFilmPixels));
+}
+
+// Pixels [first, end) along one axis whose centres are in (p - radius, p + radius], within [min, max): half open, so
+// that a box of radius 1/2 touches one pixel wherever the splat falls.
+struct Footprint {
+  int first, end;
+
+  Footprint(double position, double radius, int min, int max)
+      : first(static_cast<int>(std::clamp(std::floor(position - 0.5 - radius) + 1, double(min), double(max)))),
+        end(static_cast<int>(std::clamp(std::floor(position - 0.5 + radius) + 1, double(min), double(max)))) {}
+};
+
+// Held while a splat adds its few pixels of a tile: one exchange instead of two atomic additions a channel and pixel.
+class SpinLock {
+ public:
+  explicit SpinLock(uint8_t& flag) : flag_(flag) {
+    for (int tries = 0; flag_.exchange(1, std::memory_order_acquire) != 0; ++tries) {
+      // A thread that the system has put aside may hold it.
+      if (tries >= kTriesBeforeYield) std::this_thread::yield();
+    }
+  }
+  ~SpinLock() { flag_.store(0, std::memory_order_release); }
+  SpinLock(const SpinLock&) = delete;
+  SpinLock& operator=(const SpinLock&) = delete;
+
+ private:
+  static constexpr int kTriesBeforeYield = 16;
+  std::atomic_ref<uint8_t> flag_;
+};
+
+}  // namespace
+
+Film::Film(const Vec2i& fullResolution, const PixelBounds& crop, const Filter& filter, const FileLocation& location)
+    : fullResolution_(fullResolution), crop_(crop), filter_(filter) {
+  CheckSizes(fullResolution, crop, location);
+  try {
+    for (auto& sums : sums_) sums.resize(static_cast<size_t>(crop.Area()));
+    const auto tiles = [](int side) { return static_cast<size_t>((side + kTileSide - 1) / kTileSide); };
+    tileLocks_.resize(tiles(crop.Width()) * tiles(crop.Height()));
+  } catch (const std::bad_alloc&) {
+    throw Error(location, fmt::format("not enough memory for a film of {} pixels", crop.Area()));
+  }
+}
+
+Imath::Box2d Film::SplatBounds() const {
+  return {Vec2d(crop_.min) + Vec2d(0.5) - filter_.Radius(), Vec2d(crop_.max) - Vec2d(0.5) + filter_.Radius()};
+}
+
+// Calls `addToPixels` with the parts of `pixels` (in the crop) that lie in one tile each, while that tile is locked.
+template <typename F>
+void Film::ForEachLockedTile(const PixelBounds& pixels, F addToPixels) {
+  const int columns = (crop_.Width() + kTileSide - 1) / kTileSide;
+  const Vec2i first = (pixels.min - crop_.min) / kTileSide, last = (pixels.max - Vec2i(1) - crop_.min) / kTileSide;
+  for (int row = first.y; row <= last.y; ++row) {
+    for (int column = first.x; column <= last.x; ++column) {
+      const Vec2i corner = crop_.min + Vec2i(column, row) * kTileSide;
+      const PixelBounds part{
+          {std::max(pixels.min.x, corner.x), std::max(pixels.min.y, corner.y)},
+          {std::min(pixels.max.x, corner.x + kTileSide), std::min(pixels.max.y, corner.y + kTileSide)}};
+      const SpinLock lock(
+          tileLocks_[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)]);
+      addToPixels(part);
+    }
+  }
+}
+
+void Film::AddSplat(const Vec2& position, const Color& value, int64_t pass) {
+  if (!(value.IsFinite() && std::isfinite(position.x) && std::isfinite(position.y))) return Refuse();
+  auto& sums = sums_[HalfOf(pass)];
+  const Footprint rows(position.y, filter_.Radius().y, crop_.min.y, crop_.max.y);
+  const Footprint columns(position.x, filter_.Radius().x, crop_.min.x, crop_.max.x);
+  if (rows.first >= rows.end || columns.first >= columns.end) return;
+  const PixelBounds pixels{{columns.first, rows.first}, {columns.end, rows.end}};
+  if (filter_.IsUnitBox()) {
+    return ForEachLockedTile(pixels, [&](const PixelBounds& one) { Add(sums[Index(one.min.x, one.min.y)], value); });
+  }
+  std::array<float, kMaxFootprint> weightsX, weightsY;
+  for (int x = columns.first; x < columns.end; ++x)
+    weightsX[static_cast<size_t>(x - columns.first)] = static_cast<float>(filter_.NormalizedX(x + 0.5 - position.x));
+  for (int y = rows.first; y < rows.end; ++y)
+    weightsY[static_cast<size_t>(y - rows.first)] = static_cast<float>(filter_.NormalizedY(y + 0.5 - position.y));
+  ForEachLockedTile(pixels, [&](const PixelBounds& part) {
+    for (int y = part.min.y; y < part.max.y; ++y) {
+      const Color rowValue = value * weightsY[static_cast<size_t>(y - rows.first)];
+      for (int x = part.min.x; x < part.max.x; ++x)
+        Add(sums[Index(x, y)], rowValue * weightsX[static_cast<size_t>(x - columns.first)]);
+    }
+  });
+}
+
+template <typename F>
+Image Film::MakeImage(int64_t passes, F sumOfPixel) const {
+  Image image = Image::Rgb(crop_.Width(), crop_.Height());
+  image.origin = crop_.min;
+  image.fullSize = fullResolution_;
+  if (passes == 0) return image;
+  for (int y = 0; y < crop_.Height(); ++y) {
+    for (int x = 0; x < crop_.Width(); ++x) {
+      const PixelSums sums = sumOfPixel(Index(x + crop_.min.x, y + crop_.min.y));
+      for (int c = 0; c < Color::kComponents; ++c)
+        image.At(x, y, c) = static_cast<float>(sums[c].ToDouble() / static_cast<double>(passes));
+    }
+  }
+  return image;
+}
+
+Image Film::ToImage() const {
+  return MakeImage(PassCount(), [&](size_t i) {
+    PixelSums sums = sums_[0][i];
+    for (int c = 0; c < Color::kComponents; ++c) sums[c] += sums_[1][i][c];
+    return sums;
+  });
+}
+
+Image Film::HalfImage(int half) const {
+  assert(half == 0 || half == 1);
+  return MakeImage(passes_[half], [&](size_t i) { return sums_[half][i]; });
+}
+
+std::optional<double> Film::NoiseEstimate() const {
+  if (passes_[0] == 0 || passes_[1] == 0) return std::nullopt;
+  const double n0 = static_cast<double>(passes_[0]), n1 = static_cast<double>(passes_[1]);
+  const double varianceFactor = n0 * n1 / Sqr(n0 + n1);
+  double sum = 0;
+  for (size_t i = 0; i < sums_[0].size(); ++i) {
+    for (int c = 0; c < Color::kComponents; ++c) {
+      const double sum0 = sums_[0][i][c].ToDouble(), sum1 = sums_[1][i][c].ToDouble();
+      const double variance = Sqr(sum0 / n0 - sum1 / n1) * varianceFactor;
+      sum += variance / (Sqr((sum0 + sum1) / (n0 + n1)) + 0.01);
+    }
+  }
+  return sum / static_cast<double>(sums_[0].size() * Color::kComponents);
+}
+
+void Film::Merge(const Film& other) {
+  if (fullResolution_ != other.fullResolution_ || crop_ != other.crop_ || !(filter_ == other.filter_))
+    throw Error("cannot add films that differ: expected the same resolution, crop and filter");
+  for (size_t half = 0; half < sums_.size(); ++half) {
+    passes_[half] += other.passes_[half];
+    for (size_t i = 0; i < sums_[half].size(); ++i)
+      for (int c = 0; c < Color::kComponents; ++c) sums_[half][i][c] += other.sums_[half][i][c];
+  }
+  nonFinite_ += other.nonFinite_;
+}
+
+std::vector<std::byte> Film::Serialize() const {
+  const Filter::Description filter = filter_.Describe();
+  FilmHeader header{};
+  std::memcpy(header.mark, kMark, sizeof(kMark));
+  header.version = kVersion;
+  header.filterKind = filter.kind;
+  header.width = fullResolution_.x;
+  header.height = fullResolution_.y;
+  header.cropMinX = crop_.min.x;
+  header.cropMinY = crop_.min.y;
+  header.cropMaxX = crop_.max.x;
+  header.cropMaxY = crop_.max.y;
+  header.filterRadiusX = filter.radiusX;
+  header.filterRadiusY = filter.radiusY;
+  header.filterP = filter.p;
+  header.filterQ = filter.q;
+  header.passes[0] = passes_[0];
+  header.passes[1] = passes_[1];
+  header.nonFinite = nonFinite_;
+  const size_t sumBytes = sums_[0].size() * sizeof(PixelSums);
+  std::vector<std::byte> bytes(sizeof(header) + 2 * sumBytes);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  for (size_t half = 0; half < sums_.size(); ++half)
+    std::memcpy(bytes.data() + sizeof(header) + half * sumBytes, sums_[half].data(), sumBytes);
+  return bytes;
+}
+
+Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& location) {
+  FilmHeader header;
+  if (bytes.size() < sizeof(header)) throw Error(location, "not a stored film: it ends early");
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  if (std::memcmp(header.mark, kMark, sizeof(kMark)) != 0) throw Error(location, "not a stored film");
+  if (header.version != kVersion)
+    throw Error(location, fmt::format("stored film of version {}, expected {}", header.version, kVersion));
+  const Vec2i resolution(header.width, header.height);
+  const PixelBounds crop{{header.cropMinX, header.cropMinY}, {header.cropMaxX, header.cropMaxY}};
+  CheckSizes(resolution, crop, location);
+  const size_t sumBytes = static_cast<size_t>(crop.Area()) * sizeof(PixelSums);
+  if (bytes.size() != sizeof(header) + 2 * sumBytes)
+    throw Error(location,
+                fmt::format("stored film of {} bytes, expected {}", bytes.size(), sizeof(header) + 2 * sumBytes));
+  if (header.passes[0] < 0 || header.passes[1] < 0)
+    throw Error(location, "stored film with a negative number of passes");
+  const Filter filter = Filter::FromDescription(
+      {header.filterKind, header.filterRadiusX, header.filterRadiusY, header.filterP, header.filterQ}, location);
+  Film film(resolution, crop, filter, location);
+  for (size_t half = 0; half < film.sums_.size(); ++half)
+    std::memcpy(film.sums_[half].data(), bytes.data() + sizeof(header) + half * sumBytes, sumBytes);
+  film.passes_ = {header.passes[0], header.passes[1]};
+  film.nonFinite_ = header.nonFinite;
+  return film;
+}
+
+}  // namespace dapple

@@ -1,0 +1,171 @@
+// The film: adds up the samples and splats of passes, so exactly that no order and no split of the work shows.
+//
+// Sums are fixed point, 128 bits a channel, least bit 2^-64. A value is rounded once to that grid (values below 2^-40
+// in magnitude lose bits) and must be below 2^40 in magnitude; then addition is exact and associative, up to sums of
+// 2^63. Infinities, NaNs and larger values are counted and never added. Even and odd passes are summed apart: two
+// halves that are independent of each other, so that their difference measures the noise.
+//
+//   film.AddSample(pixel, radiance * weight / samplesPerPass, pass);   // camera: offset and weight from Filter::Sample
+//   film.AddSplat(position, contribution / pathsPerPass, pass);        // light tracing
+//   film.FinishPass(pass);
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "src/base/color.h"
+#include "src/base/error.h"
+#include "src/base/vec.h"
+#include "src/image/filter.h"
+#include "src/image/image.h"
+
+namespace dapple {
+
+/// A number in two's complement: (high 2^64 + low) 2^-64.
+struct FixedPoint {
+  uint64_t low = 0, high = 0;
+
+  static constexpr int kFractionBits = 64;
+  /// Magnitudes from here on are refused.
+  static constexpr float kLimit = 0x1p40f;
+
+  /// True where `value` is finite and below the limit.
+  static bool IsInRange(float value) {
+    return (std::bit_cast<uint32_t>(value) & 0x7fffffffu) < std::bit_cast<uint32_t>(kLimit);
+  }
+  /// The nearest multiple of 2^-64 (halves away from zero) of a value in range. No branches.
+  static FixedPoint FromFloat(float value);
+  double ToDouble() const;
+
+  FixedPoint& operator+=(const FixedPoint& other) {
+    low += other.low;
+    high += other.high + (low < other.low ? 1 : 0);
+    return *this;
+  }
+  friend FixedPoint operator+(FixedPoint a, const FixedPoint& b) { return a += b; }
+  friend bool operator==(const FixedPoint&, const FixedPoint&) = default;
+};
+
+/// Bounds of a film: pixels along one side, and pixels in the crop.
+inline constexpr int kMaxFilmSide = 1 << 24;
+inline constexpr int64_t kMaxFilmPixels = int64_t{1} << 28;
+
+class Film {
+ public:
+  /// A film of the pixels `crop` (not empty, inside the resolution) of a picture of `fullResolution` pixels.
+  /// Takes 96 bytes a pixel. Throws `Error` at `location` where the sizes make no sense or the memory does not suffice.
+  Film(const Vec2i& fullResolution, const PixelBounds& crop, const Filter& filter, const FileLocation& location = {});
+
+  const Vec2i& FullResolution() const { return fullResolution_; }
+  const PixelBounds& Crop() const { return crop_; }
+  const Filter& PixelFilter() const { return filter_; }
+  /// Splats outside this rectangle (continuous pixel coordinates: the crop grown by the filter's radius) touch no
+  /// pixel. Light tracing must send splats to all of it, beyond the edges of the picture too, or its border pixels turn
+  /// dark.
+  Imath::Box2d SplatBounds() const;
+
+  /// Adds to `pixel` (inside the crop) in the sum of `pass`. One sample of n in a pass carries the weight 1/n.
+  /// Not atomic: one thread owns a pixel at a time, and no splats are added meanwhile.
+  void AddSample(const Vec2i& pixel, const Color& value, int64_t pass);
+
+  /// Spreads `value` over the pixels around `position` (pixel (x, y) covers [x, x+1) x [y, y+1)) with the filter's
+  /// normalised weights f(centre - position) / integral, per unit of image area in pixels. Any thread may call it at
+  /// any time, except while samples are added.
+  void AddSplat(const Vec2& position, const Color& value, int64_t pass);
+
+  /// Counts `pass` as complete. Call it once a pass, by one thread, after all its samples and splats.
+  void FinishPass(int64_t pass) { ++passes_[HalfOf(pass)]; }
+  /// Number of finished passes; of the even (0) or odd (1) ones.
+  int64_t PassCount() const { return passes_[0] + passes_[1]; }
+  int64_t PassCount(int half) const { return passes_[half]; }
+  /// How many samples and splats were refused: a channel infinite, NaN, or at least 2^40 in magnitude.
+  int64_t NonFiniteCount() const { return static_cast<int64_t>(nonFinite_); }
+
+  /// The mean of all passes: R, G, B of the crop, with its place in the picture. Black before the first pass.
+  Image ToImage() const;
+  /// The mean of the even (0) or odd (1) passes alone.
+  Image HalfImage(int half) const;
+  /// Estimates the relative MSE of `ToImage` that is due to noise (bias is not seen): the mean over pixels and channels
+  /// of
+  ///   (h0 - h1)^2 n0 n1 / (n0 + n1)^2 / (m^2 + 0.01)
+  /// where h are the half-images, n their passes, and m is the image. The numerator's expectation is the variance of m
+  /// if passes are independent, and for n0 = n1 whenever the halves are. Nothing before both halves have a pass.
+  std::optional<double> NoiseEstimate() const;
+
+  /// Adds the sums and counts of another film of the same resolution, crop and filter, exactly. Throws `Error`.
+  void Merge(const Film& other);
+
+  /// The whole state as bytes, and back. `Deserialize` throws `Error` at `location` where the bytes are not a film of
+  /// this version or not of the length they claim.
+  std::vector<std::byte> Serialize() const;
+  static Film Deserialize(std::span<const std::byte> bytes, const FileLocation& location = {});
+
+  friend bool operator==(const Film&, const Film&) = default;
+
+ private:
+  using PixelSums = std::array<FixedPoint, Color::kComponents>;
+  static constexpr int kTileSide = 16;
+
+  static int HalfOf(int64_t pass) { return static_cast<int>(pass & 1); }
+  size_t Index(int x, int y) const {
+    return static_cast<size_t>(y - crop_.min.y) * static_cast<size_t>(crop_.Width()) +
+           static_cast<size_t>(x - crop_.min.x);
+  }
+  void Add(PixelSums& sums, const Color& value);
+  template <typename F>
+  void ForEachLockedTile(const PixelBounds& pixels, F addToPixels);
+  void Refuse() { std::atomic_ref(nonFinite_).fetch_add(1, std::memory_order_relaxed); }
+  template <typename F>
+  Image MakeImage(int64_t passes, F sumOfPixel) const;
+
+  Vec2i fullResolution_;
+  PixelBounds crop_;
+  Filter filter_;
+  std::array<std::vector<PixelSums>, 2> sums_;
+  std::array<int64_t, 2> passes_{};
+  uint64_t nonFinite_ = 0;
+  std::vector<uint8_t> tileLocks_;  // one for each kTileSide x kTileSide pixels; 1 while a splat is added there
+};
+
+inline FixedPoint FixedPoint::FromFloat(float value) {
+  const uint32_t bits = std::bit_cast<uint32_t>(value);
+  const int exponent = static_cast<int>((bits >> 23) & 0xff);
+  const uint32_t mantissa = (bits & 0x7fffff) | (exponent != 0 ? 0x800000u : 0u);
+  // The value is mantissa * 2^(exponent - 150), that is mantissa * 2^shift of the least bits.
+  const int shift = exponent - 150 + kFractionBits;
+  const int down = std::clamp(-shift, 0, 26);  // 26 shifts out all 24 bits and the carry of rounding
+  const uint64_t rounded = (mantissa + ((1u << down) >> 1)) >> down;
+  const int up = std::max(shift, 0);  // at most 80, for values in range
+  // rounded * 2^up over two words: shifts by up to 104 bits, in two halves since 63 is the most that one may do.
+  const int down104 = 104 - up;
+  const uint64_t low = (rounded << (up / 2)) << (up - up / 2);
+  const uint64_t high = ((rounded << 40) >> (down104 / 2)) >> (down104 - down104 / 2);
+  const uint64_t sign = -static_cast<uint64_t>(bits >> 31);
+  // Negation: all bits turned around, plus one, which carries where the low word is zero.
+  return {(low ^ sign) - sign, (high ^ sign) + (sign & (low == 0 ? 1 : 0))};
+}
+
+inline double FixedPoint::ToDouble() const {
+  const auto value = static_cast<__int128>((static_cast<unsigned __int128>(high) << 64) | low);
+  return static_cast<double>(value) * 0x1p-64;
+}
+
+inline void Film::Add(PixelSums& sums, const Color& value) {
+  if (!(FixedPoint::IsInRange(value.r) && FixedPoint::IsInRange(value.g) && FixedPoint::IsInRange(value.b)))
+    return Refuse();
+  for (int c = 0; c < Color::kComponents; ++c) sums[c] += FixedPoint::FromFloat(value[c]);
+}
+
+inline void Film::AddSample(const Vec2i& pixel, const Color& value, int64_t pass) {
+  assert(crop_.Contains(pixel));
+  Add(sums_[HalfOf(pass)][Index(pixel.x, pixel.y)], value);
+}
+
+}  // namespace dapple

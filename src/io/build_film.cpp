@@ -1,0 +1,224 @@
+#include "src/io/build_film.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace dapple {
+
+namespace {
+
+constexpr int kMaxResolution = 1 << 16;
+constexpr int kPbrtDefaultDepth = 5;  // of every integrator that knows "maxdepth", in both versions
+
+/// A parameter that must be at least `least`.
+int GetIntAtLeast(const Entity& entity, const char* name, int fallback, int least) {
+  const int value = entity.params.GetInt(name, fallback);
+  if (value < least)
+    throw Error(entity.params.LocationOf(name, entity.location),
+                fmt::format("parameter \"{}\" is {}, expected at least {}", name, value, least));
+  return value;
+}
+
+int GetResolution(const Entity& film, const char* name, int fallback) {
+  const int value = GetIntAtLeast(film, name, fallback, 1);
+  if (value > kMaxResolution)
+    throw Error(film.params.LocationOf(name, film.location),
+                fmt::format("parameter \"{}\" is {}, expected at most {}", name, value, kMaxResolution));
+  return value;
+}
+
+/// Pixels whose lower corners lie within shares of the image (pbrt: both ends are rounded up).
+PixelBounds BoundsOfWindow(const Vec2i& resolution, const std::array<double, 4>& window) {
+  const auto pixel = [](double share, int size) {
+    return static_cast<int>(std::ceil(std::clamp(share, 0.0, 1.0) * size));
+  };
+  return {{pixel(std::min(window[0], window[1]), resolution.x), pixel(std::min(window[2], window[3]), resolution.y)},
+          {pixel(std::max(window[0], window[1]), resolution.x), pixel(std::max(window[2], window[3]), resolution.y)}};
+}
+
+std::optional<std::array<double, 4>> FilmCropWindow(const BuildContext& context, const Vec2i& ownResolution) {
+  const Entity& film = context.description.film;
+  std::optional<std::array<double, 4>> window;
+  if (film.params.Has("cropwindow")) {
+    const std::vector<double> values = film.params.GetFloatArray("cropwindow", 4);
+    window = {values[0], values[1], values[2], values[3]};
+  }
+  if (!film.params.Has("pixelbounds")) return window;
+  if (window)
+    context.diagnostics.Warn(film.params.LocationOf("cropwindow", film.location),
+                             "\"pixelbounds\" is given too; \"cropwindow\" is ignored");
+  const std::vector<int> values = film.params.GetIntArray("pixelbounds", 4);
+  const double width = ownResolution.x, height = ownResolution.y;
+  return std::array<double, 4>{values[0] / width, values[1] / width, values[2] / height, values[3] / height};
+}
+
+void SetCrop(const BuildContext& context, const BuildOptions& options, const Vec2i& ownResolution,
+             RenderSettings* settings) {
+  const Entity& film = context.description.film;
+  const std::optional<std::array<double, 4>> own = FilmCropWindow(context, ownResolution);
+  const bool isOverridden = options.cropWindow.has_value();
+  const std::optional<std::array<double, 4>> window = isOverridden ? options.cropWindow : own;
+  settings->crop = {{0, 0}, settings->resolution};
+  if (!window) return;
+  settings->crop = BoundsOfWindow(settings->resolution, *window);
+  if (!settings->crop.IsEmpty()) return;
+  throw Error(isOverridden ? FileLocation() : film.params.LocationOf("cropwindow", film.location),
+              fmt::format("the crop window {} {} {} {} holds no pixel, expected xMin xMax yMin yMax within 0 and 1",
+                          (*window)[0], (*window)[1], (*window)[2], (*window)[3]));
+}
+
+/// The factor that v4's film applies to every value: shutter time * iso / 100.
+double ImagingRatio(const BuildContext& context) {
+  const Entity& film = context.description.film;
+  const CameraDescription& camera = context.description.camera;
+  const double open = camera.params.GetFloat("shutteropen", 0), close = camera.params.GetFloat("shutterclose", 1);
+  const double time = film.params.GetFloat("exposuretime", close - open);
+  if (!(time > 0))
+    throw Error(camera.params.LocationOf("shutterclose", camera.location),
+                fmt::format("the shutter is open for {} seconds, expected more than 0", time));
+  const std::string sensor = film.params.GetString("sensor", "cie1931");
+  if (sensor != "cie1931")
+    context.diagnostics.Warn(film.params.LocationOf("sensor", film.location),
+                             fmt::format("sensor \"{}\" is not supported; \"cie1931\" is used", sensor));
+  return time * film.params.GetFloat("iso", 100) / 100;
+}
+
+void BuildFilm(const BuildContext& context, const BuildOptions& options, RenderSettings* settings) {
+  const Entity& film = context.description.film;
+  if (film.IsGiven() && film.type != "image" && film.type != "rgb") {
+    if (film.type != "gbuffer" && film.type != "spectral")
+      FailUnknownName(film.location, "film", film.type, {"image", "rgb", "gbuffer", "spectral"});
+    context.diagnostics.Warn(film.location, fmt::format("film \"{}\" is not supported; \"rgb\" is used", film.type));
+  }
+  const Vec2i own(GetResolution(film, "xresolution", 1280), GetResolution(film, "yresolution", 720));
+  settings->resolution = options.resolution.value_or(own);
+  SetCrop(context, options, own, settings);
+  settings->outputFile = film.params.GetString("filename", "");
+  film.params.GetFloat("diagonal", 35);  // matters to "realistic" cameras alone
+  if (context.IsV3()) {
+    settings->exposure = static_cast<float>(film.params.GetFloat("scale", 1));
+    WarnUnsupported(context, film.params, "maxsampleluminance");
+  } else {
+    settings->exposure = static_cast<float>(ImagingRatio(context));
+    for (const char* name :
+         {"maxcomponentvalue", "whitebalance", "coordinatesystem", "lambdamin", "lambdamax", "nbuckets"})
+      WarnUnsupported(context, film.params, name);
+    film.params.GetBool("savefp16", true);  // a matter of the file
+  }
+  film.params.ReportUnused(context.diagnostics);
+}
+
+Filter BuildFilter(const BuildContext& context) {
+  const Entity& filter = context.description.pixelFilter;
+  const ParameterList& params = filter.params;
+  const bool isV3 = context.IsV3();
+  const std::string type = filter.IsGiven() ? filter.type : (isV3 ? "box" : "gaussian");
+  const auto radius = [&](double fallback) {
+    return Vec2d(params.GetFloat(isV3 ? "xwidth" : "xradius", fallback),
+                 params.GetFloat(isV3 ? "ywidth" : "yradius", fallback));
+  };
+  if (type == "box") return Filter::Box(radius(0.5), filter.location);
+  if (type == "triangle") return Filter::Triangle(radius(2), filter.location);
+  if (type == "gaussian" && isV3) {
+    const Vec2d r = radius(2);
+    return Filter::Gaussian(r, params.GetFloat("alpha", 2), filter.location);
+  }
+  if (type == "gaussian") {
+    const Vec2d r = radius(1.5);
+    return Filter::GaussianSigma(r, params.GetFloat("sigma", 0.5), filter.location);
+  }
+  if (type == "mitchell") {
+    const Vec2d r = radius(2);
+    const double B = params.GetFloat("B", 1. / 3), C = params.GetFloat("C", 1. / 3);
+    return Filter::Mitchell(r, B, C, filter.location);
+  }
+  if (type == "sinc") {
+    const Vec2d r = radius(4);
+    return Filter::Sinc(r, params.GetFloat("tau", 3), filter.location);
+  }
+  FailUnknownName(filter.location, "pixel filter", type, {"box", "gaussian", "mitchell", "sinc", "triangle"});
+}
+
+void BuildSampler(const BuildContext& context, RenderSettings* settings) {
+  const Entity& sampler = context.description.sampler;
+  if (!sampler.IsGiven()) return;
+  if (sampler.type == "stratified")
+    settings->samplesPerPixel = GetIntAtLeast(sampler, "xsamples", 4, 1) * GetIntAtLeast(sampler, "ysamples", 4, 1);
+  else
+    settings->samplesPerPixel = GetIntAtLeast(sampler, "pixelsamples", 16, 1);
+  if (sampler.params.Has("seed")) settings->seed = sampler.params.GetInt("seed", 0);
+  // How pbrt's own sequences are made; Dapple has its own.
+  sampler.params.ReportUnused(context.diagnostics, {"pixelsamples", "xsamples", "ysamples", "jitter", "dimensions",
+                                                    "randomization", "samplepixelcenter"});
+}
+
+void BuildSppm(const Entity& integrator, RenderSettings* settings) {
+  const ParameterList& params = integrator.params;
+  if (params.Has("iterations"))
+    settings->iterations = GetIntAtLeast(integrator, "iterations", 64, 1);
+  else if (params.Has("numiterations"))
+    settings->iterations = GetIntAtLeast(integrator, "numiterations", 64, 1);
+  const int photons = params.GetInt("photonsperiteration", -1);
+  if (photons > 0) settings->photonsPerIteration = photons;
+  if (!params.Has("radius")) return;
+  const double radius = params.GetFloat("radius", 1);
+  if (!(radius > 0))
+    throw Error(params.LocationOf("radius", integrator.location),
+                fmt::format("parameter \"radius\" is {}, expected more than 0", radius));
+  settings->radius = radius;
+}
+
+void BuildIntegrator(const BuildContext& context, RenderSettings* settings) {
+  const Entity& integrator = context.description.integrator;
+  if (!integrator.IsGiven()) return;
+  settings->integrator = integrator.type == "volpath" ? "path" : integrator.type;
+  settings->maxDepth = GetIntAtLeast(integrator, "maxdepth", kPbrtDefaultDepth, 0);
+  if (integrator.params.Has("seed")) settings->seed = integrator.params.GetInt("seed", 0);
+  if (integrator.type == "sppm") {
+    BuildSppm(integrator, settings);
+    // pbrt-v4's sppm has no count of its own: a pass for each sample of a pixel.
+    if (!settings->iterations && !context.IsV3()) settings->iterations = settings->samplesPerPixel.value_or(16);
+    if (!settings->iterations) settings->iterations = 64;
+  }
+  // Of pbrt's own algorithms and machinery; nothing here depends on them.
+  integrator.params.ReportUnused(context.diagnostics, {"rrthreshold",
+                                                       "lightsampler",
+                                                       "lightsamplestrategy",
+                                                       "regularize",
+                                                       "imagewritefrequency",
+                                                       "pixelbounds",
+                                                       "strategy",
+                                                       "visualizestrategies",
+                                                       "visualizeweights",
+                                                       "bootstrapsamples",
+                                                       "chains",
+                                                       "mutationsperpixel",
+                                                       "largestepprobability",
+                                                       "sigma",
+                                                       "samplebsdf",
+                                                       "samplelights",
+                                                       "cossample",
+                                                       "maxdistance",
+                                                       "nsamples",
+                                                       "iterations",
+                                                       "numiterations",
+                                                       "photonsperiteration",
+                                                       "radius"});
+}
+
+}  // namespace
+
+RenderSettings BuildSettings(const BuildContext& context, const BuildOptions& options) {
+  RenderSettings settings;
+  BuildFilm(context, options, &settings);
+  settings.filter = BuildFilter(context);
+  context.description.pixelFilter.params.ReportUnused(context.diagnostics);
+  BuildSampler(context, &settings);
+  BuildIntegrator(context, &settings);
+  const ParameterList& sceneOptions = context.description.options;
+  if (sceneOptions.Has("seed")) settings.seed = sceneOptions.GetInt("seed", 0);
+  return settings;
+}
+
+}  // namespace dapple

@@ -1,0 +1,41 @@
+// One function a family of material types; for build_materials.cpp alone.
+#pragma once
+
+#include <memory>
+
+#include "src/io/build_values.h"
+#include "src/materials/bump.h"
+#include "src/materials/material.h"
+#include "src/materials/roughness.h"
+
+namespace dapple {
+
+/// What the builders of all types need.
+struct MaterialInput {
+  Values& values;
+  const MaterialDescription& material;
+
+  const ParameterList& Params() const { return material.params; }
+  ColorTexturePtr ColorOf(std::string_view name, double fallback) const {
+    return values.GetColor(Params(), name, Color(static_cast<float>(fallback)));
+  }
+  FloatTexturePtr FloatOf(std::string_view name, double fallback) const {
+    return values.GetFloat(Params(), name, fallback);
+  }
+};
+
+/// The bump map or normal map, or null: v3's "bumpmap", v4's "displacement" and "normalmap".
+SurfaceDetailPtr BuildDetail(const MaterialInput& in);
+/// "uroughness" and "vroughness", each else "roughness", else the fallback; names begin with `prefix`.
+Roughness BuildRoughness(const MaterialInput& in, double fallback, RoughnessRemap remap,
+                         const std::string& prefix = "");
+/// An index of refraction that no texture may vary: where one does, a warning, and the fallback.
+float GetUniformEta(const MaterialInput& in, std::string_view name, double fallback);
+
+// Each gives null where `type` is none of its own.
+std::unique_ptr<Material> BuildV3Material(const MaterialInput& in);
+std::unique_ptr<Material> BuildV4Material(const MaterialInput& in);
+/// A stand-in, with a warning.
+std::unique_ptr<Material> BuildStandIn(const MaterialInput& in);
+
+}  // namespace dapple

@@ -1,0 +1,170 @@
+#include "src/io/build_materials.h"
+
+#include <fmt/format.h>
+
+#include "src/io/build_material_types.h"
+#include "src/io/nearest_name.h"
+#include "src/materials/coated_materials.h"
+#include "src/materials/conductor_materials.h"
+#include "src/materials/dielectric_materials.h"
+#include "src/materials/diffuse_materials.h"
+#include "src/materials/mix_material.h"
+#include "src/materials/procedural_textures.h"
+
+namespace dapple {
+
+namespace {
+
+const std::vector<std::string> kMaterialTypes = {
+    "matte", "plastic",       "translucent",     "glass",     "mirror",     "metal",          "substrate",
+    "uber",  "mix",           "diffuse",         "conductor", "dielectric", "thindielectric", "diffusetransmission",
+    "none",  "coateddiffuse", "coatedconductor", "interface"};
+
+bool IsInterfaceType(const std::string& type) { return type.empty() || type == "none" || type == "interface"; }
+
+/// Mixes name other materials; the chain of them shows a circle.
+using Chain = std::vector<const MaterialDescription*>;
+std::unique_ptr<Material> Build(Values& values, const MaterialDescription& material, Chain* chain);
+
+std::shared_ptr<const Material> BuildNamed(Values& values, const std::string& name, const FileLocation& location,
+                                           Chain* chain) {
+  const SceneDescription& description = values.Context().description;
+  const int index = description.FindMaterial(name);
+  if (index < 0) {
+    std::vector<std::string> known;
+    for (const MaterialDescription& material : description.materials)
+      if (!material.name.empty()) known.push_back(material.name);
+    throw Error(location, fmt::format("no material is named \"{}\"{}", name, DidYouMean(name, known)));
+  }
+  const MaterialDescription& material = description.materials[static_cast<size_t>(index)];
+  if (std::find(chain->begin(), chain->end(), &material) != chain->end())
+    throw Error(location, fmt::format("material \"{}\" is a mix of itself", name));
+  return Build(values, material, chain);
+}
+
+std::unique_ptr<Material> BuildMix(const MaterialInput& in, Chain* chain) {
+  const ParameterList& params = in.Params();
+  const FileLocation& location = in.material.location;
+  if (params.Has("materials")) {
+    const std::vector<std::string> names = params.GetStringArray("materials", 2);
+    const FileLocation at = params.LocationOf("materials", location);
+    const auto first = BuildNamed(in.values, names[0], at, chain), second = BuildNamed(in.values, names[1], at, chain);
+    // In pbrt-v4 the amount is that of the second.
+    return std::make_unique<MixMaterial>(second, first, std::make_shared<GrayTexture>(in.FloatOf("amount", 0.5)));
+  }
+  std::shared_ptr<const Material> parts[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::string parameter = i == 0 ? "namedmaterial1" : "namedmaterial2";
+    if (!params.Has(parameter))
+      throw Error(location, fmt::format("a mix without its materials, expected \"string {}\"",
+                                        in.values.Context().IsV3() ? parameter : "materials"));
+    parts[i] = BuildNamed(in.values, params.GetString(parameter, ""), params.LocationOf(parameter, location), chain);
+  }
+  return std::make_unique<MixMaterial>(parts[0], parts[1], in.ColorOf("amount", 0.5));
+}
+
+std::unique_ptr<Material> Build(Values& values, const MaterialDescription& material, Chain* chain) {
+  if (IsInterfaceType(material.type)) {
+    material.params.IgnoreAll();
+    return nullptr;
+  }
+  const MaterialInput in{values, material};
+  chain->push_back(&material);
+  std::unique_ptr<Material> result;
+  if (material.type == "mix") result = BuildMix(in, chain);
+  if (!result) result = BuildV3Material(in);
+  if (!result) result = BuildV4Material(in);
+  if (!result) result = BuildStandIn(in);
+  chain->pop_back();
+  material.params.ReportUnused(values.Context().diagnostics, {"type"});
+  return result;
+}
+
+float ConstantOr(const FloatTexturePtr& texture, float fallback) {
+  return texture->IsConstant() ? texture->Evaluate(TextureContext()) : fallback;
+}
+
+/// Disney's material by its largest part: metal, glass or a coated diffuse body.
+std::unique_ptr<Material> BuildDisneyStandIn(const MaterialInput& in) {
+  const ColorTexturePtr color = in.ColorOf("color", 0.5);
+  // GGX's alpha is the square of Disney's roughness.
+  const FloatTexturePtr disneyRoughness = in.FloatOf("roughness", 0.5);
+  const Roughness roughness(MakeScale(disneyRoughness, disneyRoughness), RoughnessRemap::None);
+  const FloatTexturePtr eta = in.FloatOf("eta", 1.5);
+  if (ConstantOr(in.FloatOf("metallic", 0), 0) > 0.5f) return std::make_unique<ConductorMaterial>(color, roughness);
+  if (ConstantOr(in.FloatOf("spectrans", 0), 0) > 0.5f) return std::make_unique<DielectricMaterial>(eta, roughness);
+  return std::make_unique<CoatedDiffuseMaterial>(color, roughness, ConstantOr(eta, 1.5f));
+}
+
+}  // namespace
+
+SurfaceDetailPtr BuildDetail(const MaterialInput& in) {
+  FloatTexturePtr displacement = in.values.FindFloat(in.Params(), "displacement");
+  if (!displacement) displacement = in.values.FindFloat(in.Params(), "bumpmap");
+  const Parameter* normalMap = in.Params().Find("normalmap");
+  if (normalMap)
+    return std::make_shared<NormalMap>(in.values.GetImage(*normalMap, ColorEncoding::Linear()), normalMap->location);
+  if (!displacement || displacement->IsConstant()) return nullptr;
+  return std::make_shared<BumpMap>(displacement);
+}
+
+Roughness BuildRoughness(const MaterialInput& in, double fallback, RoughnessRemap remap, const std::string& prefix) {
+  const FloatTexturePtr both = in.FloatOf(prefix + "roughness", fallback);
+  const FloatTexturePtr u = in.values.FindFloat(in.Params(), prefix + "uroughness");
+  const FloatTexturePtr v = in.values.FindFloat(in.Params(), prefix + "vroughness");
+  return {u ? u : both, v ? v : both, remap};
+}
+
+float GetUniformEta(const MaterialInput& in, std::string_view name, double fallback) {
+  const FloatTexturePtr eta = in.values.FindIndexOfRefraction(in.Params(), name);
+  if (!eta) return static_cast<float>(fallback);
+  if (eta->IsConstant()) return eta->Evaluate(TextureContext());
+  in.values.Context().diagnostics.Warn(
+      in.Params().LocationOf(name, in.material.location),
+      fmt::format("a texture of parameter \"{}\" is not supported; {} is used", name, fallback));
+  return static_cast<float>(fallback);
+}
+
+std::unique_ptr<Material> BuildStandIn(const MaterialInput& in) {
+  const std::string& type = in.material.type;
+  std::unique_ptr<Material> result;
+  const char* standIn = "a diffuse surface";
+  if (type == "disney") {
+    standIn = "its largest part";
+    result = BuildDisneyStandIn(in);
+  } else if (type == "subsurface" || type == "kdsubsurface") {
+    const bool hasKd = in.Params().Has("Kd");
+    result = std::make_unique<MatteMaterial>(in.ColorOf(hasKd ? "Kd" : "reflectance", 0.5), nullptr, BuildDetail(in));
+  } else if (type == "hair") {
+    const Color brown(0.2f, 0.1f, 0.05f);
+    result = std::make_unique<MatteMaterial>(in.values.GetColor(in.Params(), "color", brown));
+  } else if (type == "fourier" || type == "measured") {
+    result = std::make_unique<MatteMaterial>(MakeConstant(Color(0.5f)));
+  } else {
+    FailUnknownName(in.material.location, "material", type, kMaterialTypes);
+  }
+  in.values.Context().diagnostics.Warn(in.material.location,
+                                       fmt::format("material \"{}\" is not supported; {} stands in", type, standIn));
+  in.Params().IgnoreAll();
+  return result;
+}
+
+Materials::Materials(Values& values) : values_(values), indices_(values.Context().description.materials.size()) {}
+
+bool Materials::IsInterface(int material) const {
+  return IsInterfaceType(values_.Context().description.materials[static_cast<size_t>(material)].type);
+}
+
+int Materials::IndexOf(int material) {
+  std::optional<int>& index = indices_[static_cast<size_t>(material)];
+  if (index) return *index;
+  Chain chain;
+  const MaterialDescription& description = values_.Context().description.materials[static_cast<size_t>(material)];
+  std::unique_ptr<Material> built =
+      AtLocation(description.location, [&] { return Build(values_, description, &chain); });
+  index = built ? static_cast<int>(built_.size()) : -1;
+  if (built) built_.push_back(std::move(built));
+  return *index;
+}
+
+}  // namespace dapple

@@ -1,0 +1,104 @@
+#include "src/io/build_material_types.h"
+#include "src/materials/conductor_materials.h"
+#include "src/materials/dielectric_materials.h"
+#include "src/materials/diffuse_materials.h"
+#include "src/materials/named_spectra.h"
+#include "src/materials/plastic_materials.h"
+#include "src/materials/procedural_textures.h"
+
+namespace dapple {
+
+namespace {
+
+RoughnessRemap Remap(const MaterialInput& in) {
+  return in.Params().GetBool("remaproughness", true) ? RoughnessRemap::V3 : RoughnessRemap::None;
+}
+
+FloatTexturePtr EtaOrIndex(const MaterialInput& in) {
+  FloatTexturePtr eta = in.values.FindIndexOfRefraction(in.Params(), "eta");
+  FloatTexturePtr index = in.values.FindIndexOfRefraction(in.Params(), "index");
+  if (eta) return eta;
+  return index ? index : MakeConstant(1.5f);
+}
+
+/// As pbrt-v3: of glass and substrate, "roughness" alone says nothing.
+Roughness TwoRoughnesses(const MaterialInput& in, double fallback) {
+  return {in.FloatOf("uroughness", fallback), in.FloatOf("vroughness", fallback), Remap(in)};
+}
+
+std::unique_ptr<Material> BuildMatte(const MaterialInput& in) {
+  return std::make_unique<MatteMaterial>(in.ColorOf("Kd", 0.5), in.FloatOf("sigma", 0), BuildDetail(in));
+}
+
+std::unique_ptr<Material> BuildPlastic(const MaterialInput& in) {
+  const Roughness roughness(in.FloatOf("roughness", 0.1), Remap(in));
+  return std::make_unique<PlasticMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), roughness, BuildDetail(in));
+}
+
+std::unique_ptr<Material> BuildTranslucent(const MaterialInput& in) {
+  const Roughness roughness(in.FloatOf("roughness", 0.1), Remap(in));
+  return std::make_unique<TranslucentMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), roughness,
+                                               in.ColorOf("reflect", 0.5), in.ColorOf("transmit", 0.5),
+                                               BuildDetail(in));
+}
+
+bool IsZero(const FloatTexturePtr& texture) {
+  return !texture || (texture->IsConstant() && texture->Evaluate(TextureContext()) == 0);
+}
+
+/// Glass of roughness 0 is smooth; elsewhere pbrt-v3 maps 0 to a GGX alpha of 0.047.
+Roughness GlassRoughness(const MaterialInput& in) {
+  const Roughness roughness = TwoRoughnesses(in, 0);
+  const auto isZero = [&](const char* name) { return IsZero(in.values.FindFloat(in.Params(), name)); };
+  return isZero("uroughness") && isZero("vroughness") ? Roughness() : roughness;
+}
+
+std::unique_ptr<Material> BuildGlass(const MaterialInput& in) {
+  return std::make_unique<DielectricMaterial>(EtaOrIndex(in), GlassRoughness(in), in.ColorOf("Kr", 1),
+                                              in.ColorOf("Kt", 1), BuildDetail(in));
+}
+
+std::unique_ptr<Material> BuildMirror(const MaterialInput& in) {
+  return std::make_unique<MirrorMaterial>(in.ColorOf("Kr", 0.9), BuildDetail(in));
+}
+
+std::unique_ptr<Material> BuildMetal(const MaterialInput& in) {
+  const auto copper = [](const char* name) { return SpectrumToColorV3(NamedSpectrum(name)); };
+  ColorTexturePtr eta = in.values.GetColor(in.Params(), "eta", copper("metal-Cu-eta"));
+  ColorTexturePtr k = in.values.GetColor(in.Params(), "k", copper("metal-Cu-k"));
+  return std::make_unique<ConductorMaterial>(eta, k, BuildRoughness(in, 0.01, Remap(in)), BuildDetail(in));
+}
+
+std::unique_ptr<Material> BuildSubstrate(const MaterialInput& in) {
+  return std::make_unique<SubstrateMaterial>(in.ColorOf("Kd", 0.5), in.ColorOf("Ks", 0.5), TwoRoughnesses(in, 0.1),
+                                             BuildDetail(in));
+}
+
+std::unique_ptr<Material> BuildUber(const MaterialInput& in) {
+  UberMaterial::Parameters parameters;
+  parameters.kd = in.ColorOf("Kd", 0.25);
+  parameters.ks = in.ColorOf("Ks", 0.25);
+  parameters.kr = in.ColorOf("Kr", 0);
+  parameters.kt = in.ColorOf("Kt", 0);
+  parameters.opacity = in.ColorOf("opacity", 1);
+  parameters.eta = EtaOrIndex(in);
+  parameters.roughness = BuildRoughness(in, 0.1, Remap(in));
+  return std::make_unique<UberMaterial>(parameters, BuildDetail(in));
+}
+
+}  // namespace
+
+std::unique_ptr<Material> BuildV3Material(const MaterialInput& in) {
+  const std::string& type = in.material.type;
+  if (type == "matte") return BuildMatte(in);
+  if (type == "plastic") return BuildPlastic(in);
+  if (type == "translucent") return BuildTranslucent(in);
+  if (type == "glass") return BuildGlass(in);
+  if (type == "mirror") return BuildMirror(in);
+  if (type == "metal") return BuildMetal(in);
+  if (type == "substrate") return BuildSubstrate(in);
+  if (type == "uber") return BuildUber(in);
+  return nullptr;
+}
+
+}  // namespace dapple

@@ -1,0 +1,37 @@
+// From what a scene file says to a scene that can be traced.
+//
+//   auto scene = LoadScene("scene.pbrt", {}, diagnostics);
+//
+// Defaults and meanings are those of the version of pbrt that the file is in. What is not supported gets a warning at
+// its place and a stand-in; what cannot be right is an Error at its place.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "src/io/scene_description.h"
+#include "src/scene/scene.h"
+
+namespace dapple {
+
+/// What the command line says; absent: the file's own.
+struct BuildOptions {
+  int pbrtVersion = 0;  ///< 3 or 4; 0: found from the text (`LoadScene`)
+  std::optional<Vec2i> resolution;
+  /// xMin, xMax, yMin, yMax as shares of the image, in [0, 1].
+  std::optional<std::array<double, 4>> cropWindow;
+};
+
+/// The parts of the scene, as `Scene` takes them. Throws `Error`.
+SceneParts BuildSceneParts(const SceneDescription& description, const BuildOptions& options, Diagnostics& diagnostics);
+
+std::unique_ptr<Scene> BuildScene(const SceneDescription& description, const BuildOptions& options,
+                                  Diagnostics& diagnostics);
+
+/// Reads and builds the scene file at `path`.
+std::unique_ptr<Scene> LoadScene(const std::filesystem::path& path, const BuildOptions& options,
+                                 Diagnostics& diagnostics);
+
+}  // namespace dapple

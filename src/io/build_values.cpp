@@ -1,0 +1,181 @@
+#include "src/io/build_values.h"
+
+#include <fmt/format.h>
+
+#include "src/io/build_textures.h"
+#include "src/io/nearest_name.h"
+#include "src/materials/named_spectra.h"
+#include "src/materials/procedural_textures.h"
+
+namespace dapple {
+
+namespace {
+
+const char* RgbSpaceName(RgbSpace space) {
+  switch (space) {
+    case RgbSpace::DciP3:
+      return "dci-p3";
+    case RgbSpace::Rec2020:
+      return "rec2020";
+    case RgbSpace::Aces2065_1:
+      return "aces2065-1";
+    default:
+      return "srgb";
+  }
+}
+
+void CheckOneValue(const Parameter& parameter, int count) {
+  if (count == 1) return;
+  throw Error(parameter.location, fmt::format("parameter \"{}\" has {} values, expected one", parameter.name, count));
+}
+
+[[noreturn]] void FailColorType(const Parameter& parameter) {
+  throw Error(parameter.location, fmt::format("parameter \"{}\" is \"{}\", expected a colour: \"rgb\", \"spectrum\", "
+                                              "\"blackbody\" or a texture",
+                                              parameter.name, TypeName(parameter.type)));
+}
+
+}  // namespace
+
+Values::Values(const BuildContext& context)
+    : context_(context),
+      images_(&context.diagnostics),
+      colorTextures_(context.description.textures.size()),
+      floatTextures_(context.description.textures.size()) {}
+
+Spectrum Values::ToSpectrum(const Parameter& parameter) const {
+  const Spectrum::Outside outside = context_.IsV3() ? Spectrum::Outside::kConstant : Spectrum::Outside::kZero;
+  if (parameter.strings.empty()) return Spectrum::FromPairs(parameter.numbers, outside, parameter.location);
+  CheckOneValue(parameter, parameter.Count());
+  const std::string& name = parameter.strings[0];
+  if (IsSpectrumName(name)) return NamedSpectrum(name, parameter.location);
+  const std::filesystem::path path = context_.description.ResolvePath(name, parameter.location);
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure))
+    throw Error(parameter.location,
+                fmt::format("no file and no spectrum is named \"{}\"{}", name, DidYouMean(name, SpectrumNames())));
+  return ReadSpectrum(path.string(), outside, parameter.location);
+}
+
+Color Values::ToColor(const Parameter& parameter, RgbUse use) const {
+  const bool isV3 = context_.IsV3(), isEmission = use == RgbUse::kEmission;
+  const std::vector<double>& numbers = parameter.numbers;
+  const auto triple = [&] {
+    CheckOneValue(parameter, parameter.Count());
+    return Color(static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2]));
+  };
+  switch (parameter.type) {
+    case ParameterType::Rgb:
+      return isV3 ? triple() : RgbFromColorSpace(triple(), RgbSpaceName(parameter.rgbSpace), use, parameter.location);
+    case ParameterType::Xyz: {
+      triple();
+      return XyzToRgb({numbers[0], numbers[1], numbers[2]});
+    }
+    case ParameterType::Float: {
+      CheckOneValue(parameter, parameter.Count());
+      return Color(static_cast<float>(numbers[0]));
+    }
+    case ParameterType::Blackbody:
+      if (!isV3) {
+        CheckOneValue(parameter, parameter.Count());
+        return BlackbodyV4(numbers[0]);
+      }
+      if (numbers.size() != 2)
+        throw Error(parameter.location, fmt::format("parameter \"{}\" has {} numbers, expected two: kelvin and scale",
+                                                    parameter.name, numbers.size()));
+      return BlackbodyV3(numbers[0]) * static_cast<float>(numbers[1]);
+    case ParameterType::Spectrum:
+      if (isV3) return SpectrumToColorV3(ToSpectrum(parameter));
+      return isEmission ? EmissionToColorV4(ToSpectrum(parameter)) : SpectrumToColorV4(ToSpectrum(parameter));
+    default:
+      FailColorType(parameter);
+  }
+}
+
+Color Values::GetConstantColor(const ParameterList& params, std::string_view name, const Color& fallback,
+                               RgbUse use) const {
+  const Parameter* parameter = params.Find(name);
+  if (!parameter) return fallback;
+  const Color color = ToColor(*parameter, use);
+  const bool saysNegative = parameter->type == ParameterType::Rgb || parameter->type == ParameterType::Float;
+  const bool isNegative =
+      saysNegative && std::any_of(parameter->numbers.begin(), parameter->numbers.end(), [](double x) { return x < 0; });
+  if (use == RgbUse::kEmission && isNegative)
+    throw Error(parameter->location, fmt::format("parameter \"{}\" has a negative value, expected 0 or more", name));
+  // What is left of negative values stands for colours outside the gamut.
+  return use == RgbUse::kEmission ? Map(color, [](float x) { return std::max(x, 0.f); }) : color;
+}
+
+void Values::FailTexture(const Parameter& parameter, bool isSpectrum) const {
+  const std::string& name = parameter.strings[0];
+  const bool isOfOtherKind = (isSpectrum ? parameter.floatTexture : parameter.spectrumTexture) >= 0;
+  const char* kind = isSpectrum ? "spectrum" : "float";
+  if (isOfOtherKind)
+    throw Error(parameter.location, fmt::format("texture \"{}\" of parameter \"{}\" is a {} texture, expected a {} one",
+                                                name, parameter.name, isSpectrum ? "float" : "spectrum", kind));
+  std::vector<std::string> known;
+  for (const TextureDescription& texture : context_.description.textures)
+    if (texture.isSpectrum == isSpectrum) known.push_back(texture.name);
+  throw Error(parameter.location,
+              fmt::format("no {} texture is named \"{}\" here{}", kind, name, DidYouMean(name, known)));
+}
+
+ColorTexturePtr Values::ColorTextureAt(const Parameter& parameter) {
+  CheckOneValue(parameter, parameter.Count());
+  if (parameter.spectrumTexture < 0) FailTexture(parameter, true);
+  const auto index = static_cast<size_t>(parameter.spectrumTexture);
+  if (!colorTextures_[index]) colorTextures_[index] = BuildColorTexture(*this, context_.description.textures[index]);
+  return colorTextures_[index];
+}
+
+FloatTexturePtr Values::FloatTextureAt(const Parameter& parameter) {
+  CheckOneValue(parameter, parameter.Count());
+  if (parameter.floatTexture < 0) FailTexture(parameter, false);
+  const auto index = static_cast<size_t>(parameter.floatTexture);
+  if (!floatTextures_[index]) floatTextures_[index] = BuildFloatTexture(*this, context_.description.textures[index]);
+  return floatTextures_[index];
+}
+
+ColorTexturePtr Values::FindColor(const ParameterList& params, std::string_view name) {
+  const Parameter* parameter = params.Find(name);
+  if (!parameter) return nullptr;
+  if (parameter->type == ParameterType::Texture) return ColorTextureAt(*parameter);
+  return MakeConstant(ToColor(*parameter, RgbUse::kReflectance));
+}
+
+ColorTexturePtr Values::GetColor(const ParameterList& params, std::string_view name, const Color& fallback) {
+  ColorTexturePtr texture = FindColor(params, name);
+  return texture ? texture : MakeConstant(fallback);
+}
+
+FloatTexturePtr Values::FindFloat(const ParameterList& params, std::string_view name) {
+  const Parameter* parameter = params.Find(name);
+  if (!parameter) return nullptr;
+  if (parameter->type == ParameterType::Texture) return FloatTextureAt(*parameter);
+  return MakeConstant(static_cast<float>(params.GetFloat(name, 0)));
+}
+
+FloatTexturePtr Values::GetFloat(const ParameterList& params, std::string_view name, double fallback) {
+  FloatTexturePtr texture = FindFloat(params, name);
+  return texture ? texture : MakeConstant(static_cast<float>(fallback));
+}
+
+FloatTexturePtr Values::FindIndexOfRefraction(const ParameterList& params, std::string_view name) {
+  const Parameter* parameter = params.Find(name);
+  if (!parameter) return nullptr;
+  if (parameter->type == ParameterType::Spectrum)
+    return MakeConstant(static_cast<float>(ToSpectrum(*parameter)(kFraunhoferD)));
+  if (parameter->type == ParameterType::Rgb) return MakeConstant(ToColor(*parameter, RgbUse::kReflectance).g);
+  return FindFloat(params, name);
+}
+
+std::shared_ptr<const Image> Values::GetImage(const Parameter& fileName, ColorEncoding encoding) {
+  if (fileName.type != ParameterType::String)
+    throw Error(fileName.location,
+                fmt::format("parameter \"{}\" is \"{}\", expected \"string\"", fileName.name, TypeName(fileName.type)));
+  CheckOneValue(fileName, fileName.Count());
+  const std::filesystem::path path = context_.description.ResolvePath(fileName.strings[0], fileName.location);
+  return images_.Get(path.string(), encoding, fileName.location);
+}
+
+}  // namespace dapple

@@ -1,0 +1,65 @@
+// Parameters as colours, numbers and textures.
+//
+// A parameter of a material or texture is a constant or names a texture; either way it comes out as a texture.
+// Constants of lights come out as colours. Which RGB stands for a spectrum is pbrt's choice and depends on the version
+// (src/materials/spectrum.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src/io/build_context.h"
+#include "src/materials/image_texture.h"
+#include "src/materials/spectrum.h"
+#include "src/materials/texture.h"
+
+namespace dapple {
+
+/// A gray of a float texture.
+class GrayTexture final : public ColorTexture {
+ public:
+  explicit GrayTexture(FloatTexturePtr gray) : gray_(std::move(gray)) {}
+  Color Evaluate(const TextureContext& at) const override { return Color(gray_->Evaluate(at)); }
+  bool IsConstant() const override { return gray_->IsConstant(); }
+
+ private:
+  FloatTexturePtr gray_;
+};
+
+/// Builds what parameters say; builds textures when they are first asked for, each once.
+class Values {
+ public:
+  explicit Values(const BuildContext& context);
+
+  const BuildContext& Context() const { return context_; }
+
+  // Textures. An absent parameter gives `fallback`, or null from `Find...`. Errors: a texture of that name is not there
+  // or is of the other kind; a type that is no colour or number; more than one value.
+  ColorTexturePtr GetColor(const ParameterList& params, std::string_view name, const Color& fallback);
+  ColorTexturePtr FindColor(const ParameterList& params, std::string_view name);
+  FloatTexturePtr GetFloat(const ParameterList& params, std::string_view name, double fallback);
+  FloatTexturePtr FindFloat(const ParameterList& params, std::string_view name);
+
+  /// A colour without texture; emission has its own conversion (RgbUse), and must not be negative.
+  Color GetConstantColor(const ParameterList& params, std::string_view name, const Color& fallback, RgbUse use) const;
+  /// One index of refraction: a number, a float texture, or a spectrum at the helium d line.
+  FloatTexturePtr FindIndexOfRefraction(const ParameterList& params, std::string_view name);
+  /// A spectrum parameter's function of the wavelength.
+  Spectrum ToSpectrum(const Parameter& parameter) const;
+
+  /// The image that a parameter names.
+  std::shared_ptr<const Image> GetImage(const Parameter& fileName, ColorEncoding encoding);
+
+ private:
+  ColorTexturePtr ColorTextureAt(const Parameter& parameter);
+  FloatTexturePtr FloatTextureAt(const Parameter& parameter);
+  Color ToColor(const Parameter& parameter, RgbUse use) const;
+  [[noreturn]] void FailTexture(const Parameter& parameter, bool isSpectrum) const;
+
+  const BuildContext& context_;
+  ImageCache images_;
+  std::vector<ColorTexturePtr> colorTextures_;  // by index of the description; null: not built yet
+  std::vector<FloatTexturePtr> floatTextures_;
+};
+
+}  // namespace dapple

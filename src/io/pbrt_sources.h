@@ -1,0 +1,39 @@
+// The stack of files that a scene is read from: the main file and, on top of it, what it includes.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/base/error.h"
+#include "src/io/pbrt_lexer.h"
+
+namespace dapple {
+
+class PbrtSources {
+ public:
+  struct Source {
+    std::unique_ptr<const std::string> text;
+    std::filesystem::path canonicalPath;  ///< Empty: text from memory.
+    std::unique_ptr<PbrtLexer> lexer;
+    bool isImport = false;
+    std::size_t blockCount = 0;  ///< Blocks that were open where the file was imported.
+    FileLocation includedAt;
+  };
+
+  /// Text from memory; `name` stands in messages.
+  void PushText(std::string text, const std::string& name);
+  /// A file, decompressed where needed. Throws Error at `includedAt` where it cannot be read, is being read already, or
+  /// lies deeper than 64 files.
+  Source& PushFile(const std::filesystem::path& path, const FileLocation& includedAt);
+
+  bool IsEmpty() const { return stack_.empty(); }
+  Source& Top() { return stack_.back(); }
+  void Pop() { stack_.pop_back(); }
+
+ private:
+  std::vector<Source> stack_;
+};
+
+}  // namespace dapple

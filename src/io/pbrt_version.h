@@ -1,0 +1,61 @@
+// Finds out which version of the pbrt format a file is in, 3 or 4, from the words it uses.
+//
+// Each word that only one version knows speaks for it, once and with a weight; the heavier side wins, a tie is
+// version 4.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "src/base/error.h"
+#include "src/io/parameters.h"
+
+namespace dapple {
+
+enum class WordKind {
+  Directive,
+  ParameterType,
+  Camera,
+  Film,
+  Sampler,
+  Integrator,
+  Accelerator,
+  PixelFilter,
+  Material,
+  Texture,
+  TextureValue,
+  Light,
+  Shape,
+  BoolSpelling,     ///< "quoted", "bare"
+  BlackbodyForm,    ///< "scaled", "plain"
+  FilterParameter,  ///< This and the next kinds: names of parameters.
+  IntegratorParameter,
+  LightParameter,
+  MaterialParameter,
+  ShapeParameter,
+  TextureParameter,
+  Ending  ///< "WorldBegin without WorldEnd"
+};
+
+class PbrtVersionVotes {
+ public:
+  /// Weighs a word of the file; words that both versions know weigh nothing.
+  void Saw(WordKind kind, std::string_view word, const FileLocation& location);
+  /// Weighs the names of parameters of one statement.
+  void SawParameters(WordKind kind, const ParameterList& parameters);
+
+  int Version() const;
+  /// The weightiest words for `version`, for people; "nothing in the file tells ..." where there are none.
+  std::string Reason(int version) const;
+
+ private:
+  struct Vote {
+    int version, weight;
+    std::string text;
+  };
+  std::vector<Vote> votes_;
+  std::vector<bool> seen_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,29 @@
+#include "src/io/scene_description.h"
+
+namespace dapple {
+
+namespace {
+
+bool Exists(const std::filesystem::path& path) {
+  std::error_code failure;  // names too long for the file system exist nowhere
+  return std::filesystem::exists(path, failure);
+}
+
+}  // namespace
+
+int SceneDescription::FindMaterial(std::string_view name) const {
+  for (std::size_t i = materials.size(); i-- > 1;)
+    if (!name.empty() && materials[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+std::filesystem::path SceneDescription::ResolvePath(const std::string& name, const FileLocation& namedAt) const {
+  std::filesystem::path path(name);
+  if (path.is_absolute()) return path;
+  std::filesystem::path besideScene = folder / path;
+  if (Exists(besideScene) || !namedAt.file) return besideScene;
+  std::filesystem::path besideFile = std::filesystem::path(*namedAt.file).parent_path() / path;
+  return Exists(besideFile) ? besideFile : besideScene;
+}
+
+}  // namespace dapple

@@ -1,0 +1,92 @@
+// What a pbrt scene file says, as plain data: every statement with its parameters (not yet interpreted), its transform
+// and its place in the file. The reader (pbrt_parser.h) fills it, `BuildScene` turns it into a Scene.
+//
+// References between entities are indices, resolved with the scope rules of the format. Transforms are double
+// precision.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "src/base/error.h"
+#include "src/base/transform.h"
+#include "src/io/parameters.h"
+
+namespace dapple {
+
+/// One statement: `Film "rgb" "integer xresolution" 100`. Default-constructed: the file has none of it.
+struct Entity {
+  std::string type;  ///< "rgb"; may be "" where the file says so (Material "").
+  ParameterList params;
+  FileLocation location;  ///< Of the directive; no file: not given.
+
+  bool IsGiven() const { return location.file != nullptr; }
+};
+
+struct CameraDescription : Entity {
+  Transform cameraFromWorld;
+};
+
+struct MaterialDescription : Entity {
+  std::string name;  ///< Of MakeNamedMaterial; "" for Material. `type` is then that of the parameter "type".
+};
+
+struct TextureDescription : Entity {
+  std::string name;
+  bool isSpectrum = false;  ///< "spectrum" or "color"; else "float".
+  Transform worldFromTexture;
+};
+
+struct LightDescription : Entity {
+  Transform worldFromLight;
+};
+
+struct ShapeDescription : Entity {
+  /// To the world, or, in an object definition, to the object's space.
+  Transform worldFromShape;
+  bool reverseOrientation = false;
+  int material = 0;  ///< Index into `SceneDescription::materials`.
+  /// Index into `SceneDescription::areaLights`, or -1. May be set within an object definition too.
+  int areaLight = -1;
+};
+
+struct ObjectDefinition {
+  std::string name;
+  std::vector<ShapeDescription> shapes;
+  FileLocation location;
+};
+
+/// Shows object `object` with worldFromInstance * (the shape's own transform).
+struct InstanceDescription {
+  int object = 0;  ///< Index into `SceneDescription::objects`.
+  Transform worldFromInstance;
+  FileLocation location;
+};
+
+struct SceneDescription {
+  int version = 4;                     ///< 3 or 4: defaults and some meanings differ.
+  std::string versionReason;           ///< Why, for people: 'WorldEnd (scene.pbrt:20:1)', "asked for".
+  std::filesystem::path file, folder;  ///< Of the main scene; `folder` is where file names are searched.
+
+  CameraDescription camera;
+  Entity film, sampler, integrator, pixelFilter, accelerator;
+  ParameterList options;  ///< Of v4's Option statements.
+
+  /// [0] is the material of a shape before any Material statement: "diffuse", no parameters, no location.
+  std::vector<MaterialDescription> materials;
+  std::vector<TextureDescription> textures;
+  std::vector<LightDescription> lights;
+  std::vector<Entity> areaLights;
+  std::vector<ShapeDescription> shapes;
+  std::vector<ObjectDefinition> objects;
+  std::vector<InstanceDescription> instances;
+
+  /// The last material that MakeNamedMaterial gave this name (for "mix"), or -1.
+  int FindMaterial(std::string_view name) const;
+  /// Where a file named in a parameter lies: absolute names as they are, others relative to the main scene's folder, or
+  /// else to the folder of the file that names it. Where neither exists, the first, for the message.
+  std::filesystem::path ResolvePath(const std::string& name, const FileLocation& namedAt) const;
+};
+
+}  // namespace dapple

@@ -1,0 +1,31 @@
+// Whole files as text: plain or gzipped (told by their first bytes, not by their names), and files of numbers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "src/base/error.h"
+
+namespace dapple {
+
+/// The bytes of a file, decompressed where it is gzip (several members too). Throws Error where it is missing, no
+/// regular file, unreadable, or damaged; `namedAt` is the place that names the file.
+std::string ReadTextFile(const std::filesystem::path& path, const FileLocation& namedAt = {});
+
+/// The numbers of a text (SPD files and the like), separated by blanks, line ends or commas; # begins a comment.
+/// Throws Error with line and column of what is not a finite number.
+std::vector<double> ParseNumbers(std::string_view text, const std::string& fileName);
+std::vector<double> ReadNumberFile(const std::filesystem::path& path, const FileLocation& namedAt = {});
+
+enum class NumberStatus { Ok, Malformed, Overflow };
+
+/// Reads the decimal number at `begin` ("+1", "-.5", "1e-3"; no hex, no "inf", no "nan"), no further than `last`;
+/// `*end` is set behind it. What is too small for a double becomes zero; what is too large is Overflow.
+NumberStatus ParseNumber(const char* begin, const char* last, double* value, const char** end);
+
+/// `text` fit for a message: quoted, cut behind `longest` bytes, what is not printable as \xNN.
+std::string Quoted(std::string_view text, std::size_t longest = 40);
+
+}  // namespace dapple

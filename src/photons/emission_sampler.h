@@ -1,0 +1,45 @@
+// The one question that photons ask: which light, where on it, which way. One unit cube of five random numbers for all
+// lights of the scene, with the exact density and the inverse.
+#pragma once
+
+#include <optional>
+
+#include "lights/light.h"
+#include "lights/light_picker.h"
+#include "src/scene/scene.h"
+
+namespace dapple {
+
+/// A photon as it leaves its light.
+struct EmissionSample {
+  int light = -1;       ///< index in the scene
+  double pdfLight = 0;  ///< discrete probability of this light
+  LeSample le;
+
+  /// The flux that one emitted photon stands for: the mean over photons is the scene's emitted power.
+  Color Flux() const { return le.Flux() * static_cast<float>(1 / pdfLight); }
+};
+
+struct EmissionPdf {
+  double light = 0;      ///< discrete
+  double position = 0;   ///< as LeSample::pdfPos
+  double direction = 0;  ///< as LeSample::pdfDir
+};
+
+class EmissionSampler {
+ public:
+  /// The scene must outlive the sampler.
+  explicit EmissionSampler(const Scene& scene) : scene_(&scene) {}
+
+  /// `u.part` chooses the light (by power), and what is left of it the part of the light. Nothing where no light emits.
+  std::optional<EmissionSample> Sample(const LeRandom& u) const;
+  /// The densities with which `Sample` gives this ray of this light; `n` as for Light::Pdf_Le.
+  EmissionPdf Pdf(int light, const Ray& ray, const Vec3& n) const;
+  /// The random numbers with which `Sample` gives this ray of this light.
+  LeRandom Inverse(int light, const Ray& ray, const Vec3& n) const;
+
+ private:
+  const Scene* scene_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,65 @@
+// The photon tracer: one light path, from its emission to its last scattering, handed vertex by vertex to a visitor.
+#pragma once
+
+#include "src/photons/emission_sampler.h"
+#include "src/sampling/sampler.h"
+
+namespace dapple {
+
+/// A surface that a light path meets.
+struct LightVertex {
+  const SurfaceInteraction& hit;  ///< hit.wo points back to where the light comes from
+  const Bsdf& bsdf;
+  Color flux;      ///< that arrives here, as carried by one path
+  int scattered;   ///< scattering events before this vertex: 0 for light that comes straight from its source
+  bool isCaustic;  ///< there were some, and all of them were specular
+};
+
+/// Walks one light path and calls `visit(const LightVertex&)` at each surface it meets, black ones excepted. A vertex
+/// is visited only if one more scattering event there keeps the path within `maxDepth` of them. Russian roulette keeps
+/// a path with the share of its flux that a scattering leaves, so that the power of photons stays even (Jensen 2001,
+/// section 5.2). Returns the number of segments traced; 0 where nothing was emitted.
+template <typename Visitor>
+int TraceLightPath(const Scene& scene, const EmissionSampler& emission, Sampler sampler, int maxDepth,
+                   Visitor&& visit) {
+  LeRandom u;
+  u.direction = sampler.Get2D();
+  u.position = sampler.Get2D();
+  u.part = sampler.Get1D();
+  const std::optional<EmissionSample> emitted = emission.Sample(u);
+  if (!emitted) return 0;
+
+  Ray ray = emitted->le.ray;
+  Color flux = emitted->Flux();
+  int segments = 0;
+  bool allSpecular = true;
+  for (int scattered = 0; scattered < maxDepth && !flux.IsBlack();) {
+    ++segments;
+    const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
+    if (!hit) break;
+    const Material* material = scene.MaterialAt(*hit);
+    if (!material) {
+      ray = SpawnRay(*hit, ray.d);
+      continue;
+    }
+    const Bsdf bsdf = material->GetBsdf(*hit);
+    if (bsdf.IsBlack()) break;
+    visit(LightVertex{*hit, bsdf, flux, scattered, allSpecular && scattered > 0});
+
+    sampler.StartBlock(scattered + 1);
+    const double uLobe = sampler.Get1D();
+    const Vec2d uDirection = sampler.Get2D();
+    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Importance);
+    if (!next) break;
+    const Color scatteredFlux = flux * next->weight;
+    const float keep = std::min(1.f, scatteredFlux.MaxComponent() / flux.MaxComponent());
+    if (!(sampler.Get1D() < keep)) break;
+    flux = scatteredFlux / keep;
+    ray = SpawnRay(*hit, next->wi);
+    allSpecular &= next->IsSpecular();
+    ++scattered;
+  }
+  return segments;
+}
+
+}  // namespace dapple

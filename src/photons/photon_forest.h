@@ -1,0 +1,105 @@
+// Points in space, in buckets with a nanoflann kd-tree each; see photon_map.h.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <nanoflann.hpp>
+
+#include "src/base/parallel.h"
+#include "src/base/vec.h"
+
+namespace dapple {
+
+class PhotonForest {
+ public:
+  PhotonForest() = default;
+  explicit PhotonForest(std::vector<Vec3> positions);
+
+  /// Entry i: which of the points given to the constructor now stands at place i.
+  const std::vector<uint32_t>& Order() const { return order_; }
+  /// Frees `Order` once the payloads follow it.
+  void ForgetOrder() { order_ = {}; }
+  const Vec3& Position(uint32_t i) const { return positions_[i]; }
+
+  /// Calls `visit(uint32_t i, float distanceSquared)` for each point nearer to `p` than `radius`.
+  template <typename Visitor>
+  void ForEachWithin(const Vec3& p, float radius, Visitor&& visit) const;
+
+  int64_t MemoryBytes() const;
+
+ private:
+  /// The points of one bucket as nanoflann reads them.
+  struct BucketPoints {
+    const Vec3* points = nullptr;
+    size_t count = 0;
+    size_t kdtree_get_point_count() const { return count; }
+    float kdtree_get_pt(uint32_t i, int axis) const { return points[i][axis]; }
+    template <typename Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, BucketPoints, float, uint32_t>,
+                                                   BucketPoints, 3, uint32_t>;
+
+  /// A nanoflann result set that hands points on and stores none.
+  template <typename Visitor>
+  struct PassOn {
+    float radiusSquared;
+    uint32_t first;
+    Visitor& visit;
+
+    float worstDist() const { return radiusSquared; }
+    bool full() const { return true; }
+    bool addPoint(float distanceSquared, uint32_t i) {
+      visit(first + i, distanceSquared);
+      return true;
+    }
+  };
+
+  struct Bucket {
+    BucketPoints points;
+    uint32_t first = 0;
+    std::unique_ptr<Tree> tree;
+  };
+
+  size_t BucketCount() const { return buckets_.size(); }
+  void SplitIntoBuckets(int levels);
+  void BuildTrees();
+
+  std::vector<Vec3> positions_;
+  std::vector<uint32_t> order_;
+  std::vector<Bucket> buckets_;  // a power of two of them, in the order of the splits
+  std::vector<Bounds3>
+      boxes_;  // implicit binary tree over the buckets: node i has children 2i and 2i + 1, the root is 1
+};
+
+template <typename Visitor>
+void PhotonForest::ForEachWithin(const Vec3& p, float radius, Visitor&& visit) const {
+  if (positions_.empty()) return;
+  const float radiusSquared = radius * radius;
+  const auto reaches = [&](const Bounds3& box) {
+    const Vec3 nearest(std::clamp(p.x, box.min.x, box.max.x), std::clamp(p.y, box.min.y, box.max.y),
+                       std::clamp(p.z, box.min.z, box.max.z));
+    return DistanceSquared(p, nearest) < radiusSquared;
+  };
+  uint32_t stack[64];
+  int size = 0;
+  if (reaches(boxes_[1])) stack[size++] = 1;
+  while (size > 0) {
+    const uint32_t node = stack[--size];
+    if (node >= BucketCount()) {
+      const Bucket& bucket = buckets_[node - BucketCount()];
+      PassOn<Visitor> passOn{radiusSquared, bucket.first, visit};
+      bucket.tree->findNeighbors(passOn, &p.x, {});
+      continue;
+    }
+    for (uint32_t child : {2 * node + 1, 2 * node})
+      if (reaches(boxes_[child])) stack[size++] = child;
+  }
+}
+
+}  // namespace dapple

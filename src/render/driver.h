@@ -1,0 +1,65 @@
+// The driver: prepares an integrator and runs its passes, one after another, until a budget is spent or a stop is asked
+// for.
+//
+// What is true of every algorithm lives here and nowhere else: budgets, progress, stopping, the sums of what was done.
+// The driver knows nothing of files and terminals: the caller watches through `RenderHooks` and writes the film
+// (output.h).
+//
+//   const RenderResult result = Render(scene, seed, *integrator, film, {.passes = 64}, {});
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "integrators/integrator.h"
+#include "src/image/film.h"
+#include "src/scene/scene.h"
+
+namespace dapple {
+
+/// When a render ends: at whichever of the two is reached first. At least one must be set.
+struct RenderBudget {
+  /// Passes that the film shall hold in the end, >= 1.
+  std::optional<int> passes;
+  /// Wall-clock seconds from the beginning of the preparation, > 0. No pass begins whose end is foreseen (from the
+  /// passes before it) to lie beyond; one pass is always rendered. So it is kept to within the unsteadiness of one
+  /// pass.
+  std::optional<double> seconds;
+};
+
+/// Where a render stands.
+struct RenderProgress {
+  int passesDone = 0;                 ///< in the film
+  double seconds = 0;                 ///< since the beginning of the preparation
+  std::optional<double> secondsLeft;  ///< estimated from the passes so far; nothing before the first
+  double fraction = 0;                ///< of the budget that is spent, in [0, 1]
+  PassStats stats;                    ///< of this render's passes
+  const Film* film = nullptr;         ///< for what the watcher wants to know of it (noise, a snapshot); between passes
+};
+
+/// How the caller watches and stops a render.
+struct RenderHooks {
+  /// Called after the preparation (no passes done) and after each pass, between passes, by the thread that called
+  /// `Render`.
+  std::function<void(const RenderProgress&)> onProgress;
+  /// Where it becomes true the render ends after the pass that is running. May be set by a signal handler.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct RenderResult {
+  int passes = 0;  ///< rendered by this call
+  double prepareSeconds = 0;
+  double seconds = 0;  ///< preparation and passes, wall clock
+  PassStats stats;
+  bool stopped = false;  ///< ended by the stop flag before the budget was spent
+};
+
+/// Prepares the integrator and adds to the film the passes that follow those it holds: film.PassCount() and on. A film
+/// that already holds passes must come from the same scene, seed and integrator; a budget of passes counts them too.
+/// Passes run one after another, each parallel in itself. Errors of the integrator are passed on.
+RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, Film& film, const RenderBudget& budget,
+                    const RenderHooks& hooks = {});
+
+}  // namespace dapple

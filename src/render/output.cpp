@@ -1,0 +1,71 @@
+#include "src/render/output.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "src/base/error.h"
+#include "src/render/version.h"
+
+namespace dapple {
+
+namespace {
+
+enum class Format { kExr, kPng };
+
+Format FormatOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".exr") return Format::kExr;
+  if (extension == ".png") return Format::kPng;
+  throw Error(FileLocation(path),
+              fmt::format("expected a file name that ends in .exr or .png, not in '{}'", extension));
+}
+
+}  // namespace
+
+ImageMetadata ToMetadata(const RenderRecord& record) {
+  ImageMetadata metadata{
+      {"scene", record.scene}, {"integrator", record.integrator},    {"seed", record.seed}, {"passes", record.passes},
+      {"version", Version()},  {"instructionSet", InstructionSet()},
+  };
+  if (record.seconds) metadata["seconds"] = *record.seconds;
+  return metadata;
+}
+
+Image ToPicture(const Film& film, const RenderSettings& settings) {
+  Image picture = film.ToImage();
+  for (float& value : picture.Values()) value *= settings.exposure;
+  return picture;
+}
+
+void CheckOutput(const std::string& path) {
+  namespace fs = std::filesystem;
+  FormatOf(path);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw Error(FileLocation(path), "expected the name of an image file; this is a folder");
+  const fs::path parent = fs::path(path).parent_path();
+  const fs::path folder = parent.empty() ? fs::path(".") : parent;
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(FileLocation(path), fmt::format("the folder '{}' does not exist; create it first", folder.string()));
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw Error(FileLocation(path), fmt::format("the folder '{}' is not writable", folder.string()));
+  }
+}
+
+void WriteOutput(const std::string& path, const Image& image, const ImageMetadata& metadata) {
+  switch (FormatOf(path)) {
+    case Format::kExr:
+      return WriteExr(path, image, metadata);
+    case Format::kPng:
+      return WritePng(path, image);
+  }
+}
+
+}  // namespace dapple

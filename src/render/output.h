@@ -1,0 +1,45 @@
+// Image files of a render: which formats there are, whether a path can be written, and what is recorded beside the
+// pixels.
+//
+//   CheckOutput(path);                                   // before hours of work
+//   WriteOutput(path, ToPicture(film, scene.Settings()), ToMetadata(record));
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "src/image/film.h"
+#include "src/image/image.h"
+#include "src/image/image_io.h"
+#include "src/scene/render_settings.h"
+
+namespace dapple {
+
+/// What is recorded in the header of an EXR file. All of it but `seconds` follows from what was asked for, so two
+/// renders of the same seed and passes give the same file; `seconds` is a measurement and is set where the file is not
+/// the same anyway (a budget of time) or where the user asks for it.
+struct RenderRecord {
+  std::string scene;  ///< the file's name, without its folder
+  std::string integrator;
+  int seed = 0;
+  int passes = 0;
+  std::optional<double> seconds;  ///< of the render
+};
+
+/// The record under the names "scene", "integrator", "seed", "passes" and "seconds", with the program's "version" and
+/// "instructionSet".
+ImageMetadata ToMetadata(const RenderRecord& record);
+
+/// The mean of the film's passes, times the exposure of the settings.
+Image ToPicture(const Film& film, const RenderSettings& settings);
+
+/// Throws `Error` where an image cannot be written to `path`: the extension is neither .exr nor .png (in any case of
+/// letters), the folder is missing or not writable, or `path` is a folder.
+void CheckOutput(const std::string& path);
+
+/// Writes a linear image by the extension of `path`: .exr keeps all of it, with the metadata; .png has values in [0, 1]
+/// in sRGB, 8 bits a channel, and no metadata. The file is whole or not there. Throws `Error` for
+/// other extensions and where writing fails.
+void WriteOutput(const std::string& path, const Image& image, const ImageMetadata& metadata);
+
+}  // namespace dapple

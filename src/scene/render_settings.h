@@ -1,0 +1,32 @@
+// What a scene file says about how it is rendered; the command line may say otherwise.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "src/base/vec.h"
+#include "src/image/film.h"
+#include "src/image/filter.h"
+
+namespace dapple {
+
+struct RenderSettings {
+  // Film.
+  Vec2i resolution{1280, 720};
+  PixelBounds crop;  ///< in pixels
+  Filter filter = Filter::Box();
+  /// Factor of the image's values before it is written (pbrt-v3's film scale; v4's exposuretime * iso / 100).
+  float exposure = 1;
+  std::string outputFile;  ///< as the scene names it; may be empty
+
+  // Integrator; absent: the integrator's own default.
+  std::string integrator;              ///< as the scene names it; may be one that Dapple lacks
+  std::optional<int> samplesPerPixel;  ///< pbrt's sampler
+  std::optional<int> iterations;       ///< sppm passes
+  std::optional<int> maxDepth;         ///< scattering events on a path
+  std::optional<int> photonsPerIteration;
+  std::optional<double> radius;  ///< starting radius in scene units
+  std::optional<int> seed;
+};
+
+}  // namespace dapple

@@ -1,0 +1,88 @@
+// A scene, ready to trace: immutable and shared by all threads.
+//
+// Built from plain parts (see `SceneParts`), by a reader or by hand in a test. All of it is in render space: the world
+// moved by `renderToWorld` so that what the camera sees is near the origin.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lights/light.h"
+#include "lights/light_picker.h"
+#include "src/geometry/accelerator.h"
+#include "src/materials/material.h"
+#include "src/scene/camera.h"
+#include "src/scene/render_settings.h"
+#include "src/scene/scene_facts.h"
+
+namespace dapple {
+
+/// One shape with what it is made of. Indices are into the lists of `SceneParts`; -1: none.
+struct ScenePrimitive {
+  std::unique_ptr<Shape> shape;
+  int material = -1;  ///< -1: an interface that light passes unchanged
+  int light = -1;     ///< area light of this shape
+  std::shared_ptr<const HitFilter> alpha;
+};
+
+struct SceneParts {
+  std::vector<ScenePrimitive> primitives;
+  std::vector<GeometryGroup> groups;
+  std::vector<GeometryInstance> instances;
+  std::vector<std::unique_ptr<Material>> materials;
+  std::vector<std::unique_ptr<Light>> lights;
+  std::unique_ptr<Camera> camera;
+  RenderSettings settings;
+  Transform renderToWorld;
+};
+
+class Scene {
+ public:
+  /// Prepares the lights, drops those that emit nothing (so indices into `Lights()` may differ from the parts'), and
+  /// builds the accelerator. Throws `Error` where the geometry cannot be traced.
+  explicit Scene(SceneParts parts);
+  ~Scene();
+
+  /// The nearest surface along the ray.
+  std::optional<SurfaceInteraction> Intersect(const Ray& ray) const { return accelerator_->Intersect(ray); }
+  /// True where nothing stands along the ray up to its end.
+  bool Unoccluded(const Ray& ray) const { return !accelerator_->Occluded(ray); }
+  /// The ray that joins a surface to sampled light, for `Unoccluded`.
+  Ray ShadowRay(const SurfaceInteraction& from, const LiSample& to) const;
+
+  /// Null: an interface that light passes unchanged.
+  const Material* MaterialAt(const SurfaceInteraction& hit) const;
+  /// The place in `Lights()` of the light that this surface is; -1 where it emits nothing.
+  int AreaLightAt(const SurfaceInteraction& hit) const { return primitives_[static_cast<size_t>(hit.shape)].light; }
+
+  const std::vector<std::unique_ptr<Light>>& Lights() const { return lights_; }
+  /// The places in `Lights()` of those that rays find by leaving the scene.
+  const std::vector<int>& InfiniteLights() const { return infiniteLights_; }
+  const LightPicker& Picker() const { return *picker_; }
+  const Camera& GetCamera() const { return *camera_; }
+  /// Shapes in the order of `SurfaceInteraction::shape`.
+  const std::vector<ScenePrimitive>& Primitives() const { return primitives_; }
+  const RenderSettings& Settings() const { return settings_; }
+  const SceneFacts& Facts() const { return facts_; }
+  const SceneExtent& Extent() const { return extent_; }
+  const Transform& RenderToWorld() const { return renderToWorld_; }
+
+ private:
+  void PrepareLights();
+  void BuildAccelerator(std::vector<GeometryGroup> groups, std::vector<GeometryInstance> instances);
+
+  std::vector<ScenePrimitive> primitives_;
+  std::vector<std::unique_ptr<Material>> materials_;
+  std::vector<std::unique_ptr<Light>> lights_;
+  std::vector<int> infiniteLights_;
+  std::unique_ptr<Camera> camera_;
+  RenderSettings settings_;
+  Transform renderToWorld_;
+  std::unique_ptr<Accelerator> accelerator_;
+  std::unique_ptr<LightPicker> picker_;
+  SceneExtent extent_;
+  SceneFacts facts_;
+};
+
+}  // namespace dapple

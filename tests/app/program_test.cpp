@@ -1,0 +1,230 @@
+// The program from end to end: what it takes, what it writes, what it says and how it exits.
+#include "tests/app/program.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "src/image/image_io.h"
+#include "src/render/version.h"
+
+namespace dapple {
+namespace {
+
+using Program = ProgramTest;
+
+TEST_F(Program, HelpNamesTheSubcommandsAndExitCodes) {
+  const ProgramResult result = Run("--help");
+  EXPECT_EQ(result.exitCode, 0);
+  for (const char* text : {"render", "info", "Exit codes"}) EXPECT_TRUE(Contains(result.out, text));
+  EXPECT_TRUE(Contains(Run("render --help").out, "--integrator"));
+  EXPECT_TRUE(Contains(Run("info --help").out, "--pbrt-version"));
+}
+
+TEST_F(Program, TellsItsVersion) {
+  const ProgramResult result = Run("--version");
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_TRUE(BeginsWith(result.out, "dapple " + Version() + ", " + InstructionSet()));
+}
+
+TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
+  WriteScene("tiny.pbrt");
+  for (const char* arguments : {"",
+                                "--no-such-option tiny.pbrt",
+                                "render",
+                                "render tiny.pbrt extra",
+                                "tiny.pbrt --passes 0",
+                                "tiny.pbrt --passes x",
+                                "tiny.pbrt --passes 2 --time 3",
+                                "tiny.pbrt --time 0",
+                                "tiny.pbrt --time -1",
+                                "tiny.pbrt --resolution 4",
+                                "tiny.pbrt --resolution 0x4",
+                                "tiny.pbrt --resolution 4x4x4",
+                                "tiny.pbrt --resolution 4x4y",
+                                "tiny.pbrt --crop 0,1,0",
+                                "tiny.pbrt --crop 0.5,0.5,0,1",
+                                "tiny.pbrt --crop 0,2,0,1",
+                                "tiny.pbrt --integrator none",
+                                "tiny.pbrt --threads -1",
+                                "tiny.pbrt --pbrt-version 5",
+                                "tiny.pbrt --radius 0",
+                                "tiny.pbrt --photons 0",
+                                "tiny.pbrt --max-depth -1",
+                                "info"}) {
+    const ProgramResult result = Run(arguments);
+    EXPECT_EQ(result.exitCode, 2) << arguments;
+    EXPECT_TRUE(BeginsWith(result.err, "error: ")) << arguments;
+    EXPECT_EQ(result.out, "") << arguments;
+  }
+  EXPECT_FALSE(Exists("tiny.exr"));
+}
+
+TEST_F(Program, AMissingSceneIsAnErrorAtItsName) {
+  for (const char* command : {"render", "info"}) {
+    const ProgramResult result = Run(std::string(command) + " nowhere.pbrt");
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_TRUE(BeginsWith(result.err, "nowhere.pbrt: error: "));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << "one line";
+  }
+}
+
+TEST_F(Program, ASyntaxErrorIsToldWithLineAndColumn) {
+  Write("broken.pbrt", "Camera \"perspective\"\nWorldBegin\n  Shap \"sphere\"\n");
+  const ProgramResult result = Run("broken.pbrt");
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_TRUE(BeginsWith(result.err, "broken.pbrt:3:3: error: "));
+}
+
+TEST_F(Program, AnOutputThatCannotBeWrittenIsToldBeforeAnythingIsRead) {
+  const ProgramResult folder = Run("nowhere.pbrt -o no/such/folder/a.exr");
+  EXPECT_EQ(folder.exitCode, 1);
+  EXPECT_TRUE(BeginsWith(folder.err, "no/such/folder/a.exr: error: the folder 'no/such/folder' does not exist"));
+  const ProgramResult extension = Run("nowhere.pbrt -o a.jpg");
+  EXPECT_EQ(extension.exitCode, 1);
+  EXPECT_TRUE(BeginsWith(extension.err, "a.jpg: error: expected a file name that ends in .exr or .png"));
+}
+
+TEST_F(Program, RendersToTheNameTheSceneGivesInTheCurrentFolder) {
+  WriteScene("scene.pbrt");
+  const ProgramResult result = Run("scene.pbrt");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  ASSERT_TRUE(Exists("tiny.exr"));
+  const Image image = ReadImage(Path("tiny.exr"));
+  EXPECT_EQ(image.Width(), 24);
+  EXPECT_EQ(image.Height(), 16);
+  EXPECT_GT(*std::ranges::max_element(image.Values()), 0.f) << "the scene is lit";
+}
+
+TEST_F(Program, SaysWhatItDid) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = Run("render tiny.pbrt");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  // A glass sphere under a point light is for photons; the scene's four samples a pixel are four passes.
+  EXPECT_TRUE(Contains(result.err, "tiny.pbrt: 24 x 16, sppm ("));
+  EXPECT_TRUE(Contains(result.err, "100 %: 4 passes, "));
+  EXPECT_FALSE(Contains(result.err, "\x1b")) << "no terminal, no control characters";
+  for (const char* text : {"4 passes in ", "rays ", "photons ", "noise ", "memory "})
+    EXPECT_TRUE(Contains(result.out, text));
+}
+
+TEST_F(Program, IsQuietWhenAsked) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = Run("tiny.pbrt --quiet");
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(Program, WritesEachOutputThatIsNamed) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(Run("-o a.png --output b.exr tiny.pbrt --passes 1").exitCode, 0);
+  EXPECT_EQ(Read("a.png").substr(1, 3), "PNG");
+  EXPECT_EQ(ReadImage(Path("b.exr")).Width(), 24);
+}
+
+TEST_F(Program, TheCommandLineOverridesTheScene) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result =
+      Run("tiny.pbrt -o a.exr --integrator path --passes 3 --seed 9 --resolution 40x20 --crop 0.25,0.75,0.5,1");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const ImageMetadata metadata = ReadExrMetadata(Path("a.exr"));
+  EXPECT_EQ(std::get<std::string>(metadata.at("scene")), "tiny.pbrt");
+  EXPECT_EQ(std::get<std::string>(metadata.at("integrator")), "path");
+  EXPECT_EQ(std::get<int>(metadata.at("passes")), 3);
+  EXPECT_EQ(std::get<int>(metadata.at("seed")), 9);
+  const Image image = ReadImage(Path("a.exr"));
+  EXPECT_EQ(image.fullSize, Vec2i(40, 20));
+  EXPECT_EQ(image.origin, Vec2i(10, 10));
+  EXPECT_EQ(image.Width(), 20);
+  EXPECT_EQ(image.Height(), 10);
+}
+
+TEST_F(Program, ACropHasThePixelsOfTheWholePicture) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(Run("tiny.pbrt -o whole.exr --integrator path --passes 2 --quiet").exitCode, 0);
+  ASSERT_EQ(Run("tiny.pbrt -o part.exr --integrator path --passes 2 --crop 0.25,0.75,0.25,1 --quiet").exitCode, 0);
+  const Image whole = ReadImage(Path("whole.exr")), part = ReadImage(Path("part.exr"));
+  ASSERT_EQ(part.Width(), 12);
+  for (int y = 0; y < part.Height(); ++y)
+    for (int x = 0; x < part.Width(); ++x)
+      EXPECT_EQ(part.ColorAt(x, y), whole.ColorAt(x + part.origin.x, y + part.origin.y)) << x << ' ' << y;
+}
+
+class ProgramByIntegrator : public ProgramTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ProgramByIntegrator, TheSameSeedGivesTheSameFileWithAnyNumberOfThreads) {
+  WriteScene("tiny.pbrt");
+  const std::string common = std::string("tiny.pbrt --quiet --passes 3 --integrator ") + GetParam();
+  for (const char* threads : {"1", "2", "3"}) {
+    const ProgramResult result = Run(common + " -o t" + threads + ".exr --threads " + threads);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+  }
+  ASSERT_FALSE(Read("t1.exr").empty());
+  EXPECT_EQ(Read("t1.exr"), Read("t2.exr"));
+  EXPECT_EQ(Read("t1.exr"), Read("t3.exr"));
+  ASSERT_EQ(Run(common + " -o other.exr --seed 1").exitCode, 0);
+  EXPECT_FALSE(std::ranges::equal(ReadImage(Path("other.exr")).Values(), ReadImage(Path("t1.exr")).Values()))
+      << "another seed, another noise";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ProgramByIntegrator, testing::Values("path", "light_tracing", "sppm"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST_F(Program, ATimeBudgetIsKeptAndRecorded) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = Run("tiny.pbrt -o a.exr --time 0.2");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const ImageMetadata metadata = ReadExrMetadata(Path("a.exr"));
+  EXPECT_GE(std::get<int>(metadata.at("passes")), 1);
+  EXPECT_GT(std::get<double>(metadata.at("seconds")), 0);
+}
+
+TEST_F(Program, SecondsAreRecordedForPassesWhereAsked) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(Run("tiny.pbrt -o a.exr --passes 1 --record-seconds").exitCode, 0);
+  ASSERT_EQ(Run("tiny.pbrt -o b.exr --passes 1").exitCode, 0);
+  EXPECT_TRUE(ReadExrMetadata(Path("a.exr")).contains("seconds"));
+  EXPECT_FALSE(ReadExrMetadata(Path("b.exr")).contains("seconds"));
+}
+
+TEST_F(Program, ASignalEndsTheRenderAndThePictureIsWritten) {
+  WriteScene("tiny.pbrt");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const ProgramResult result = RunAndSignal("tiny.pbrt -o a.exr --time 600", signal, 0.2);
+    EXPECT_EQ(result.exitCode, 128 + signal) << result.err;
+    EXPECT_GE(std::get<int>(ReadExrMetadata(Path("a.exr")).at("passes")), 1);
+    std::filesystem::remove(Path("a.exr"));
+  }
+}
+
+TEST_F(Program, WarnsOnceOfASceneInWhichNothingEmitsLight) {
+  const std::string dark =
+      "Film \"rgb\" \"integer xresolution\" [4] \"integer yresolution\" [4]\nCamera \"perspective\"\n"
+      "WorldBegin\nShape \"sphere\"\n";
+  Write("none.pbrt", dark);
+  Write("black.pbrt", dark + "LightSource \"point\" \"rgb I\" [0 0 0]\n");
+  for (const char* scene : {"none.pbrt", "black.pbrt"}) {
+    const ProgramResult result = Run(std::string(scene) + " --quiet");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(BeginsWith(result.err, std::string(scene) + ": warning: "));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+  }
+}
+
+TEST_F(Program, InfoSaysWhatIsThereAndWhatFollows) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = Run("info tiny.pbrt");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  for (const char* text : {"pbrt version 4: ", "2 shapes", "1 point", "24 x 16 pixels",
+                           "sppm: ", "4 passes (the scene's samples a pixel)", "skips"})
+    EXPECT_TRUE(Contains(result.out, text));
+  EXPECT_FALSE(Exists("tiny.exr")) << "info renders nothing";
+  EXPECT_TRUE(Contains(Run("info tiny.pbrt --integrator path --passes 7").out, "7 passes (asked for)"));
+  EXPECT_TRUE(Contains(Run("info tiny.pbrt --pbrt-version 4").out, "pbrt version 4: asked for"));
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,165 @@
+// Scenes whose radiance is known in closed form, for every integrator that can see them.
+//
+// A statistical check compares the mean of the picture with the exact value by its standard error over independent
+// groups of passes (16 groups; |t| < 5 rejects a right renderer less than once in 5,000 runs, and seeds are fixed).
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/grouped_render.h"
+#include "tests/support/scene_from_text.h"
+
+namespace dapple {
+namespace {
+
+using namespace testing_support;
+
+/// The mean of all pixels and channels, and its standard error over the groups.
+struct Estimate {
+  double mean = 0, error = 0;
+};
+
+Estimate MeanRadiance(const std::string& text, const std::string& integrator, int passes,
+                      const IntegratorOptions& options = {}) {
+  const auto scene = SceneFromText(text);
+  constexpr int kGroups = 16;
+  const GroupedImages images = RenderGroups(*scene, integrator, options, passes, kGroups);
+  std::vector<double> means;
+  for (const Image& image : images.groups) {
+    double sum = 0;
+    for (int y = 0; y < image.Height(); ++y)
+      for (int x = 0; x < image.Width(); ++x) sum += image.ColorAt(x, y).Average();
+    means.push_back(sum / (image.Width() * image.Height()));
+  }
+  Estimate estimate;
+  for (double mean : means) estimate.mean += mean / kGroups;
+  for (double mean : means) estimate.error += (mean - estimate.mean) * (mean - estimate.mean) / (kGroups - 1) / kGroups;
+  estimate.error = std::sqrt(estimate.error);
+  return estimate;
+}
+
+void ExpectRadiance(const Estimate& estimate, double exact, double bias = 0) {
+  EXPECT_NEAR(estimate.mean, exact, 5 * estimate.error + (bias + 2e-6) * exact) << "standard error " << estimate.error;
+  EXPECT_LT(estimate.error, 0.01 * exact) << "too noisy to say anything";
+}
+
+std::string Header(const std::string& lookAt, double fov) {
+  return fmt::format(
+      "LookAt {} Camera \"perspective\" \"float fov\" [{}] "
+      "Film \"image\" \"integer xresolution\" [16] \"integer yresolution\" [16] WorldBegin ",
+      lookAt, fov);
+}
+
+// A closed diffuse sphere that glows inside: every bounce sends back the share rho of what arrives everywhere, so the
+// radiance is Le / (1 - rho), the same at each point and in each direction.
+std::string IntegratingSphere(double rho) {
+  return Header("0 0 0.2  0.3 0.4 -1  0 1 0", 40) +
+         fmt::format(
+             "ReverseOrientation Material \"matte\" \"rgb Kd\" [{0} {0} {0}] "
+             "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape \"sphere\" \"float radius\" [1] WorldEnd",
+             rho);
+}
+
+TEST(IntegratingSphere, Path) { ExpectRadiance(MeanRadiance(IntegratingSphere(0.5), "path", 128), 2); }
+TEST(IntegratingSphere, LightTracing) {
+  IntegratorOptions options;
+  options.photonsPerPass = 2000;
+  ExpectRadiance(MeanRadiance(IntegratingSphere(0.5), "light_tracing", 128, options), 2);
+}
+TEST(IntegratingSphere, Sppm) {
+  IntegratorOptions options;
+  options.photonsPerPass = 4000;
+  options.radius = 0.05;
+  // On a curved surface a disk of radius r holds 1 + O(r^2) of its flat area.
+  ExpectRadiance(MeanRadiance(IntegratingSphere(0.5), "sppm", 128, options), 2, 0.05 * 0.05);
+}
+
+TEST(IntegratingSphere, DepthCutsTheSeriesForAllAlike) {
+  IntegratorOptions options;
+  options.photonsPerPass = 4000;
+  options.radius = 0.05;
+  options.maxDepth = 2;
+  const double exact = 1 + 0.5 + 0.25;
+  for (const char* integrator : {"path", "light_tracing", "sppm"})
+    ExpectRadiance(MeanRadiance(IntegratingSphere(0.5), integrator, 128, options), exact, 0.05 * 0.05);
+}
+
+// Lossless things under a sky of radiance one are invisible: they send on all that arrives.
+std::string UnderWhiteSky(const std::string& material) {
+  return Header("0 0 4  0 0 0  0 1 0", 20) + "LightSource \"infinite\" \"rgb L\" [1 1 1] " + material +
+         " Shape \"sphere\" \"float radius\" [1] WorldEnd";
+}
+
+TEST(WhiteFurnace, DiffuseSphereIsInvisible) {
+  const std::string scene = UnderWhiteSky("Material \"matte\" \"rgb Kd\" [1 1 1]");
+  IntegratorOptions options;
+  options.photonsPerPass = 4000;
+  for (const char* integrator : {"path", "light_tracing", "sppm"})
+    ExpectRadiance(MeanRadiance(scene, integrator, 64, options), 1);
+}
+
+TEST(WhiteFurnace, GlassAndMirrorAreInvisible) {
+  for (const char* material : {"Material \"glass\" \"rgb Kr\" [1 1 1] \"rgb Kt\" [1 1 1] \"float eta\" [1.5]",
+                               "Material \"mirror\" \"rgb Kr\" [1 1 1]"})
+    for (const char* integrator : {"path", "sppm"}) {
+      IntegratorOptions options;
+      options.maxDepth = 1000;
+      const Estimate estimate = MeanRadiance(UnderWhiteSky(material), integrator, 32, options);
+      ExpectRadiance(estimate, 1);
+    }
+}
+
+// A point light of intensity I at height h over a diffuse plane: at distance d from its foot, L = rho / pi I cos / r^2.
+TEST(PointLight, FallsWithSquaredDistanceAndCosine) {
+  for (double d : {0.0, 1.0, 2.5}) {
+    const std::string scene =
+        Header(fmt::format("{0} 0 20  {0} 0 0  0 1 0", d), 0.02) +
+        "LightSource \"point\" \"rgb I\" [3 3 3] \"point from\" [0 0 2] "
+        "Material \"matte\" \"rgb Kd\" [.5 .5 .5] Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
+        "\"point P\" [-5 -5 0 5 -5 0 5 5 0 -5 5 0] WorldEnd";
+    const double r2 = d * d + 4, exact = 0.5 / kPiD * 3 * (2 / std::sqrt(r2)) / r2;
+    for (const char* integrator : {"path", "sppm"}) ExpectRadiance(MeanRadiance(scene, integrator, 32), exact, 1e-4);
+  }
+}
+
+// A sphere light of radius R at distance D straight above: the plane receives pi L (R / D)^2.
+TEST(SphereLight, IrradianceStraightBelow) {
+  const std::string scene =
+      Header("0 0 -1  0 0 1  0 1 0", 0.5) +
+      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] Material \"matte\" \"rgb Kd\" [0 0 0] "
+      "Translate 0 0 3 Shape \"sphere\" \"float radius\" [1] AttributeEnd "
+      "Material \"translucent\" \"rgb Kd\" [1 1 1] \"rgb Ks\" [0 0 0] \"rgb reflect\" [0 0 0] \"rgb transmit\" [.5 .5 "
+      ".5] "
+      "Shape \"disk\" \"float radius\" [8] WorldEnd";
+  const double exact = 0.5 * 2 / 9.0;
+  IntegratorOptions options;
+  options.photonsPerPass = 2000;
+  for (const char* integrator : {"path", "sppm"})
+    ExpectRadiance(MeanRadiance(scene, integrator, 64, options), exact, 1e-4);
+}
+
+// Light through a pane of glass at right angles: a diffuse floor far below a distant light sees what the pane lets
+// pass, 2 F / (1 + F) less, with F = ((n - 1) / (n + 1))^2; photons and light tracing only (no path finds a distant
+// light).
+TEST(Glass, PaneAtRightAnglesTransmitsByFresnel) {
+  const std::string scene =
+      Header("0.5 0 0.5  0 0 0  0 0 1", 40) +
+      "LightSource \"distant\" \"rgb L\" [2 2 2] \"point from\" [0 0 1] \"point to\" [0 0 0] "
+      "AttributeBegin Material \"glass\" \"rgb Kr\" [1 1 1] \"rgb Kt\" [1 1 1] \"float eta\" [1.5] "
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 -1 2 1 -1 2 1 1 2 -1 1 2] "
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 -1 1 -1 1 1 1 1 1 1 -1 1] AttributeEnd "
+      "Material \"matte\" \"rgb Kd\" [.5 .5 .5] Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
+      "\"point P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0] WorldEnd";
+  // The first bounce on the floor alone: depth 3 leaves out light that returns from the pane.
+  IntegratorOptions options;
+  options.maxDepth = 3;
+  options.photonsPerPass = 20000;
+  options.radius = 0.1;
+  const double F = 0.04, exact = 0.5 / kPiD * 2 * (1 - F) * (1 - F);
+  for (const char* integrator : {"light_tracing", "sppm"})
+    ExpectRadiance(MeanRadiance(scene, integrator, 32, options), exact, 1e-3);
+}
+
+}  // namespace
+}  // namespace dapple

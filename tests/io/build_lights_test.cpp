@@ -1,0 +1,213 @@
+// Light statements of both versions: what they shine, in numbers.
+#include "src/base/numerics.h"
+#include "src/image/image_io.h"
+#include "tests/io/build_test_support.h"
+
+namespace dapple {
+namespace {
+
+/// A scene with a square at z = 0 (2 x 2, facing the camera) and what `lights` says.
+Built Lit(const std::string& lights, int version, const std::filesystem::path& folder = "") {
+  return BuildText("LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nWorldBegin\n\n" + lights +
+                       "\n" + Square(version) + (version == 3 ? "WorldEnd\n" : ""),
+                   version, {}, folder);
+}
+
+/// What arrives at the world's origin from the only light.
+LiSample Arriving(const Built& built, const Vec2d& u = {0.5, 0.5}) {
+  EXPECT_EQ(built->Lights().size(), 1u);
+  const Vec3 origin = ToFloat(built->RenderToWorld().Inverse().Point(Vec3d(0)));
+  const std::optional<LiSample> sample = built->Lights()[0]->Sample_Li(LightContext(origin), {0.5, u});
+  if (!sample) throw Error("no light arrives");
+  return *sample;
+}
+
+/// The irradiance that the light brings to the plane z = 0 at the origin, from the side z < 0.
+Color Irradiance(const Built& built) {
+  const Vec3 origin = ToFloat(built->RenderToWorld().Inverse().Point(Vec3d(0)));
+  constexpr int kSide = 64;
+  Color sum;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const LiRandom u{(i + 0.5) / (kSide * kSide), {(i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide}};
+    const std::optional<LiSample> sample = built->Lights()[0]->Sample_Li(LightContext(origin), u);
+    if (sample && sample->wi.z < 0) sum += sample->L * static_cast<float>(-sample->wi.z / sample->pdf);
+  }
+  return sum / (kSide * kSide);
+}
+
+TEST(BuildLights, PointLights) {
+  const Built plain = Lit(R"(LightSource "point" "point from" [0 0 -2] "rgb I" [4 8 12] "rgb scale" [1 2 3])", 3);
+  ExpectColor(Arriving(plain).L, Color(4, 16, 36) / 4);
+  EXPECT_TRUE(Arriving(plain).isDelta);
+  // pbrt-v3 adds "from" behind the transform; pbrt-v4 transforms it.
+  const std::string moved = R"(AttributeBegin Scale 2 2 2 LightSource "point" "POINT from" [0 0 -1] AttributeEnd)";
+  const auto spelled = [&](const char* point) { return std::string(moved).replace(moved.find("POINT"), 5, point); };
+  ExpectColor(Arriving(Lit(spelled("point"), 3)).L, Color(1));
+  ExpectColor(Arriving(Lit(spelled("point3"), 4)).L, Color(0.25f));
+}
+
+TEST(BuildLights, PowerOfAPointLightIsItsFlux) {
+  const Built built = Lit(R"(LightSource "point" "point3 from" [0 0 -1] "float power" 100 "float scale" 2)", 4);
+  ExpectColor(built->Lights()[0]->Power(), Color(200));
+}
+
+TEST(BuildLights, SpectraOfVersion4AreOfLuminanceOne) {
+  for (const std::string I :
+       {"\"blackbody I\" 3000", "\"spectrum I\" \"stdillum-D50\"", "\"spectrum I\" [400 3 700 9]"}) {
+    const Built built = Lit("LightSource \"point\" \"point3 from\" [0 0 -1] \"float scale\" 5 " + I, 4);
+    EXPECT_NEAR(Arriving(built).L.Luminance(), 5, 0.25) << I;  // exact but for what the gamut cuts off
+  }
+  const Built warm = Lit(R"(LightSource "point" "point3 from" [0 0 -1] "blackbody I" 3000)", 4);
+  EXPECT_GT(Arriving(warm).L.r, 1.5f * Arriving(warm).L.b);
+}
+
+TEST(BuildLights, SpotLightsPointTheirWay) {
+  const std::string spot = R"(LightSource "spot" "POINT from" [0 0 -2] "POINT to" [0 0 5] "rgb I" [4 4 4]
+      "float coneangle" [30] "float conedeltaangle" [10])";
+  const auto spelled = [&](std::string point) {
+    std::string text = spot;
+    for (size_t at; (at = text.find("POINT")) != std::string::npos;) text.replace(at, 5, point);
+    return text;
+  };
+  for (int version : {3, 4}) {
+    const Built built = Lit(spelled(version == 3 ? "point" : "point3"), version);
+    ExpectColor(Arriving(built).L, Color(1));
+    // Half-way through the rim, in cosines: t^4 and t^2 (3 - 2t) at one half.
+    const double cosine = (std::cos(Radians(20)) + std::cos(Radians(30))) / 2;
+    const double r = 2 * std::sqrt(1 - cosine * cosine) / cosine;
+    const Vec3 p = ToFloat(built->RenderToWorld().Inverse().Point({r, 0, 0}));
+    const std::optional<LiSample> sample = built->Lights()[0]->Sample_Li(LightContext(p), {});
+    ASSERT_TRUE(sample);
+    const double distanceSquared = 4 + r * r;
+    ExpectColor(sample->L, Color(static_cast<float>(4 / distanceSquared * (version == 3 ? 1. / 16 : 0.5))), 1e-3);
+  }
+  const Built power = Lit(R"(LightSource "spot" "float power" 30)", 4);
+  ExpectColor(power->Lights()[0]->Power(), Color(30), 1e-3);
+}
+
+TEST(BuildLights, DistantLightsTravelFromFromToTo) {
+  const Built v3 = Lit(R"(LightSource "distant" "point from" [1 0 -1] "point to" [0 0 0] "rgb L" [2 3 4])", 3);
+  EXPECT_LT(Distance(Arriving(v3).wi, Normalize(Vec3(1, 0, -1))), 1e-6);
+  ExpectColor(Arriving(v3).L, Color(2, 3, 4));
+  const Built rotated = Lit("AttributeBegin Rotate 90 0 1 0 LightSource \"distant\" AttributeEnd", 4);
+  EXPECT_LT(Distance(Arriving(rotated).wi, Vec3(-1, 0, 0)), 1e-6);
+  ExpectColor(Arriving(Lit(R"(LightSource "distant" "float illuminance" 50 "float scale" 2)", 4)).L, Color(100));
+}
+
+TEST(BuildLights, UniformEnvironments) {
+  const Built v3 = Lit(R"(LightSource "infinite" "rgb L" [1 2 3] "rgb scale" [2 2 2])", 3);
+  ExpectColor(Irradiance(v3), Color(2, 4, 6) * kPi, 0.01);
+  const Built v4 = Lit(R"(LightSource "infinite" "float illuminance" 7)", 4);
+  ExpectColor(Irradiance(v4), Color(7), 0.01);
+}
+
+TEST(BuildLights, EnvironmentMapsOfBothVersions) {
+  const TestFolder folder;
+  Image latLong = Image::Rgb(32, 16), square = Image::Rgb(16, 16);
+  for (Image* image : {&latLong, &square})
+    for (int y = 0; y < image->Height(); ++y)
+      for (int x = 0; x < image->Width(); ++x)
+        for (int c = 0; c < 3; ++c) image->At(x, y, c) = static_cast<float>(c + 1);
+  WriteExr((folder.Path() / "lat.exr").string(), latLong);
+  WriteExr((folder.Path() / "square.exr").string(), square);
+  const Built v3 = Lit(R"(LightSource "infinite" "string mapname" "lat.exr" "rgb scale" [2 2 2])", 3, folder.Path());
+  ExpectColor(Irradiance(v3), Color(2, 4, 6) * kPi, 0.01);
+  const Built v4 = Lit(R"(LightSource "infinite" "string filename" "square.exr" "float scale" 2)", 4, folder.Path());
+  ExpectColor(Irradiance(v4), Color(2, 4, 6) * kPi, 0.01);
+  EXPECT_TRUE(v3.warnings.empty() && v4.warnings.empty());
+  // pbrt-v4's reckoning of a map's illuminance: half of what it is.
+  const Built lit =
+      Lit(R"(LightSource "infinite" "string filename" "square.exr" "float illuminance" 10)", 4, folder.Path());
+  EXPECT_NEAR(Irradiance(lit).Luminance(), 20, 0.5);
+
+  const auto error = [&](const std::string& text) { return MessageOf([&] { Lit(text, 4, folder.Path()); }); };
+  EXPECT_EQ(error(R"(LightSource "infinite" "string filename" "lat.exr")").substr(0, 95),
+            "a.pbrt:5:24: error: environment map \"lat.exr\" is of 32 x 16 pixels, expected a square one: pbrt");
+  EXPECT_EQ(error(R"(LightSource "infinite" "string filename" "square.exr" "rgb L" [1 1 1])").substr(0, 18),
+            "a.pbrt:5:24: error");
+}
+
+TEST(BuildLights, BadPixelsOfAMapAreMendedWithAWarning) {
+  const TestFolder folder;
+  Image image = Image::Rgb(8, 4);
+  image.At(2, 1, 0) = -1;
+  image.At(3, 1, 0) = 2;
+  WriteExr((folder.Path() / "bad.exr").string(), image);
+  const Built built = Lit(R"(LightSource "infinite" "string mapname" "bad.exr")", 3, folder.Path());
+  ASSERT_EQ(built.warnings.size(), 1u);
+  EXPECT_EQ(built.warnings[0].substr(0, 21), "a.pbrt:5:24: warning:");
+}
+
+TEST(BuildLights, AreaLightsGlowOnTheirOutside) {
+  const Built v3 =
+      Lit(R"(AttributeBegin AreaLightSource "area" "rgb L" [1 2 3] "rgb scale" [2 2 2] "integer nsamples" [4]
+      Shape "sphere" "float radius" [0.5] AttributeEnd)",
+          3);
+  const double flux = kPiD * 4 * kPiD * 0.25;
+  ExpectColor(v3->Lights()[0]->Power(), Color(2, 4, 6) * static_cast<float>(flux), 1e-3);
+  const auto seen = [](const std::string& rest) {
+    const Built built = Lit("AttributeBegin Translate 0 0 -1 AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] " + rest +
+                                " Shape \"disk\" AttributeEnd",
+                            4);
+    const std::optional<SurfaceInteraction> hit = LookAtXY(*built.scene);
+    return built->Lights()[static_cast<size_t>(built->AreaLightAt(*hit))]->L(*hit, hit->wo);
+  };
+  ExpectColor(seen(""), Color(0));  // the disk faces away from the camera
+  ExpectColor(seen("\"bool twosided\" true"), Color(1));
+  ExpectColor(seen("ReverseOrientation"), Color(1));
+}
+
+TEST(BuildLights, PowerOfAnAreaLightIsThatOfEachPrimitive) {
+  const auto power = [](const std::string& rest) {
+    return Lit("AttributeBegin AreaLightSource \"diffuse\" \"float power\" 60 " + rest + " AttributeEnd", 4)
+        ->Lights()[0]
+        ->Power();
+  };
+  ExpectColor(power("Shape \"sphere\" \"float radius\" 0.3"), Color(60), 1e-3);
+  ExpectColor(power("\"bool twosided\" true Shape \"disk\""), Color(60), 1e-3);
+  // As pbrt-v4 has it: 60 for each of the square's two triangles.
+  ExpectColor(power(Square(4)), Color(120), 1e-3);
+}
+
+TEST(BuildLights, AreaLightsMayShowAnImage) {
+  const TestFolder folder;
+  Image image = Image::Rgb(2, 1);
+  image.At(1, 0, 1) = 4;
+  WriteExr((folder.Path() / "tv.exr").string(), image);
+  const Built built = BuildText(
+      "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" +
+          std::string("AreaLightSource \"diffuse\" \"string filename\" \"tv.exr\" \"float scale\" 2\n") + Square(4),
+      4, {}, folder.Path());
+  const auto seen = [&](double x) {
+    const std::optional<SurfaceInteraction> hit = LookAtXY(*built.scene, x);
+    return built->Lights()[0]->L(*hit, hit->ng);
+  };
+  ExpectColor(seen(-0.9), Color(0));
+  ExpectColor(seen(0.9), Color(0, 8, 0));
+}
+
+TEST(BuildLights, LightsInInstancesAndUnknownOnesWarn) {
+  EXPECT_EQ(
+      BuildWorld("ObjectBegin \"a\" AreaLightSource \"diffuse\" Shape \"sphere\" ObjectEnd\nObjectInstance \"a\"", 4)
+          .warnings.size(),
+      1u);
+  EXPECT_EQ(BuildWorld("LightSource \"goniometric\"", 4).warnings,
+            std::vector<std::string>{"a.pbrt:5:1: warning: light \"goniometric\" is not supported and left out"});
+  const Built dark = BuildText("WorldBegin\nShape \"sphere\"", 4);
+  EXPECT_EQ(dark.warnings.size(), 1u);
+}
+
+TEST(BuildLights, ErrorsHaveAPlace) {
+  EXPECT_EQ(WorldError(R"(LightSource "pont")", 4),
+            "a.pbrt:5:1: error: unknown light \"pont\", expected one of point, spot, distant, infinite; did you mean "
+            "\"point\"?");
+  EXPECT_EQ(WorldError(R"(LightSource "point" "rgb I" [1 -1 1])", 4),
+            "a.pbrt:5:21: error: parameter \"I\" has a negative value, expected 0 or more");
+  EXPECT_EQ(WorldError(R"(LightSource "distant" "point3 from" [0 0 1])", 4).substr(0, 17), "a.pbrt:5:1: error");
+  EXPECT_EQ(WorldError(R"(LightSource "infinite" "string filename" "no.exr")", 4).substr(0, 18), "a.pbrt:5:24: error");
+  EXPECT_EQ(WorldError(R"(AreaLightSource "defuse" Shape "sphere")", 4).substr(0, 17), "a.pbrt:5:1: error");
+  EXPECT_EQ(WorldError(R"(LightSource "point" "blackbody I" [3000 4000])", 4).substr(0, 18), "a.pbrt:5:21: error");
+}
+
+}  // namespace
+}  // namespace dapple

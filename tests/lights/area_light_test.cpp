@@ -1,0 +1,119 @@
+#include "lights/area_light.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "src/base/numerics.h"
+#include "src/geometry/bilinear_mesh.h"
+#include "src/geometry/sphere.h"
+#include "src/geometry/triangle_mesh.h"
+#include "tests/lights/light_cases.h"
+
+namespace dapple {
+namespace {
+
+double Irradiance(const Light& light, const LightContext& at, int samples, double* error) {
+  RandomNumbers random(1);
+  Mean mean;
+  for (int i = 0; i < samples; ++i) {
+    const std::optional<LiSample> sample = light.Sample_Li(at, random.Li());
+    mean.Add(sample ? static_cast<double>(sample->L.r) * std::max(0.0, Dot(ToDouble(sample->wi), ToDouble(at.ns))) /
+                          sample->pdf
+                    : 0);
+  }
+  *error = mean.StandardError();
+  return mean.Value();
+}
+
+// Facing a sphere of radius r at distance d from its centre, the irradiance is pi L (r / d)^2.
+TEST(AreaLight, SpheresFromNearToFarGiveTheirIrradiance) {
+  const Sphere sphere(Transform(), false, 1);
+  const AreaLight light(&sphere, Color(2), false);
+  for (const double distance : {1 + 1e-6, 1 + 1e-3, 1.5, 10.0, 1e3, 1e4, 1e6}) {
+    const Vec3 toCentre = Normalize(Vec3(1, 2, -2));
+    const LightContext at(toCentre * static_cast<float>(-distance), toCentre, false);
+    const double truth = 2 * kPiD / Sqr(distance);
+    double error;
+    const double estimate = Irradiance(light, at, 4000, &error);
+    EXPECT_NEAR(estimate / truth, 1, 5 * error / truth + 1e-3) << distance;
+    EXPECT_LT(error / truth, 0.02) << distance;  // directions within the cone, not points of the surface
+  }
+}
+
+TEST(AreaLight, TheInsideOfASphereIsLitFromEverywhere) {
+  const Sphere sphere(Transform(), true, 1);
+  const AreaLight light(&sphere, Color(2), false);
+  for (const float z : {0.f, 0.5f, 0.99f}) {
+    double error;
+    const double estimate = Irradiance(light, LightContext(Vec3(0, 0, z), Vec3(0.6f, 0, -0.8f), false), 20000, &error);
+    EXPECT_NEAR(estimate, 2 * kPiD, 5 * error) << z;
+  }
+  const AreaLight outward(&sphere, Color(2), true);
+  EXPECT_NEAR(outward.Power().r, 2 * 4 * kPiD * 2 * kPiD, 1e-3);
+}
+
+TEST(AreaLight, ScaleOfTheSceneDoesNotMatter) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    const float s = static_cast<float>(scale);
+    const TriangleMesh quad({{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}}, {}, {}, {0, 1, 2, 0, 2, 3}, {}, false,
+                            false);
+    const AreaLight light(&quad, Color(1), false);
+    EXPECT_NEAR(light.Area() / (4 * scale * scale), 1, 1e-6);
+    double error;
+    const double estimate = Irradiance(light, LightContext(Vec3(0, 0, s), Vec3(0, 0, -1), false), 20000, &error);
+    // Four corners of the form factor of a rectangle seen from above its corner (Howell, C-11), with sides 1 and 1
+    // at 1.
+    const double truth = 4 * std::atan(1 / std::sqrt(2.0)) / std::sqrt(2.0);
+    EXPECT_NEAR(estimate, truth, 5 * error + 1e-6) << scale;
+  }
+}
+
+class Ramp final : public ColorTexture {
+ public:
+  Color Evaluate(const TextureContext& at) const override { return Color(at.uv.x, 2, at.uv.y * at.uv.y); }
+};
+
+class HalfHole final : public FloatTexture {
+ public:
+  float Evaluate(const TextureContext& at) const override { return at.uv.x < 0.5f ? 0.f : 1.f; }
+};
+
+TEST(AreaLight, TexturesAndHolesCountInThePower) {
+  const BilinearMesh square({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {}, {}, {0, 1, 2, 3});
+  const auto ramp = std::make_shared<Ramp>();
+  const AreaLight whole(&square, ramp, false);
+  EXPECT_NEAR(whole.Power().r / kPiD, 0.5, 1e-3);
+  EXPECT_NEAR(whole.Power().g / kPiD, 2, 1e-5);
+  EXPECT_NEAR(whole.Power().b / kPiD, 1.0 / 3, 1e-3);
+  const AreaLight half(&square, ramp, true, std::make_shared<HalfHole>());
+  EXPECT_NEAR(half.Power().r / kPiD, 2 * 0.375, 2e-3);
+  RandomNumbers random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const std::optional<LeSample> sample = half.Sample_Le(random.Le());
+    if (sample) {
+      ASSERT_GE(sample->ray.o.x, 0.499f);
+    }
+  }
+}
+
+TEST(AreaLight, DegenerateShapesEmitNothing) {
+  const TriangleMesh line({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {}, {}, {0, 1, 2});
+  const AreaLight light(&line, Color(1), true);
+  EXPECT_TRUE(light.Power().IsBlack());
+  EXPECT_FALSE(light.Sample_Le({}));
+  EXPECT_FALSE(light.Sample_Li(LightContext(Vec3(0, 0, 1)), {}));
+  EXPECT_EQ(light.ImportanceAt(LightContext(Vec3(0, 0, 1))), 0);
+}
+
+TEST(AreaLight, ShinesFromItsOutsideOnly) {
+  const TriangleMesh triangle({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2});
+  const AreaLight light(&triangle, Color(1), false);
+  EXPECT_TRUE(light.Sample_Li(LightContext(Vec3(0.2f, 0.2f, 1)), {}));
+  EXPECT_FALSE(light.Sample_Li(LightContext(Vec3(0.2f, 0.2f, -1)), {}));
+  EXPECT_GT(light.ImportanceAt(LightContext(Vec3(0.2f, 0.2f, 1))), 0);
+  EXPECT_EQ(light.ImportanceAt(LightContext(Vec3(0.2f, 0.2f, -1))), 0);
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,116 @@
+#include "tests/lights/light_cases.h"
+
+#include "lights/area_light.h"
+#include "lights/distant_light.h"
+#include "lights/environment_light.h"
+#include "lights/point_light.h"
+#include "lights/spot_light.h"
+#include "src/geometry/bilinear_mesh.h"
+#include "src/geometry/cylinder.h"
+#include "src/geometry/disk.h"
+#include "src/geometry/sphere.h"
+#include "src/geometry/triangle_mesh.h"
+
+namespace dapple {
+
+namespace {
+
+// Four unlike triangles, three of them around a corner that sticks out.
+std::unique_ptr<Shape> Tent() {
+  return std::make_unique<TriangleMesh>(
+      std::vector<Vec3>{{0, 0, 2.f}, {1, 0, 1.5f}, {0, 1, 1.5f}, {-1, -1, 1.5f}, {-1.5f, 1, 1.25f}},
+      std::vector<Vec3>{}, std::vector<Vec2>{}, std::vector<int>{0, 1, 2, 0, 2, 3, 0, 3, 1, 2, 4, 3});
+}
+
+class StripedTexture final : public ColorTexture {
+ public:
+  Color Evaluate(const TextureContext& at) const override {
+    return std::fmod(at.uv.x, 0.5f) < 0.25f ? Color(4, 2, 1) : Color(0, 0, at.uv.y);
+  }
+};
+
+Transform SomeRotation() { return Transform::Rotate(40, {1, 2, 3}) * Transform::Scale({1, -1, 1}); }
+
+void AddAreaLights(std::vector<LightCase>* cases) {
+  const auto add = [&](const std::string& name, std::unique_ptr<Shape> shape, bool twoSided, bool textured = false) {
+    const Shape* s = shape.get();
+    auto light = textured ? std::make_unique<AreaLight>(s, std::make_shared<StripedTexture>(), twoSided)
+                          : std::make_unique<AreaLight>(s, Color(3, 2, 1), twoSided);
+    cases->push_back({name, std::move(shape), std::move(light)});
+  };
+  const Transform place = Transform::Translate({0.5, 0.25, 2}) * Transform::Rotate(150, {1, 0.2, 0});
+  add("sphere", std::make_unique<Sphere>(place, false, 0.5), false);
+  add("sphere inside out", std::make_unique<Sphere>(place, true, 3), false);
+  add("ellipsoid", std::make_unique<Sphere>(place * Transform::Scale({1, 0.5, 0.25}), false, 0.75), false);
+  add("disk", std::make_unique<Disk>(place, false, 0, 0.75, 0.25, 270), false);
+  add("disk two-sided", std::make_unique<Disk>(place, false, 0, 0.75, 0, 360), true);
+  add("cylinder", std::make_unique<Cylinder>(place, false, 0.25, -0.5, 0.75, 360), true);
+  add("triangles", Tent(), false);
+  add("triangles two-sided", Tent(), true);
+  const std::vector<Vec3> corners = {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {1.5f, 1.25f, 2}};
+  const auto patch = [&] {
+    return std::make_unique<BilinearMesh>(corners, std::vector<Vec3>{}, std::vector<Vec2>{},
+                                          std::vector<int>{0, 1, 2, 3}, true);
+  };
+  add("bilinear", patch(), false);
+  add("bilinear textured", patch(), true, true);
+}
+
+}  // namespace
+
+Image RandomEnvironment(int width, int height, unsigned seed) {
+  RandomNumbers random(seed);
+  Image image = Image::Rgb(width, height);
+  const auto value = [&] { return static_cast<float>(std::max(0.0, random.Get1D() - 0.25)); };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) image.SetColor(x, y, {value(), value(), value()});
+  }
+  image.SetColor(width / 3, height / 3, Color(20, 30, 40));
+  return image;
+}
+
+std::optional<SurfaceInteraction> FirstHit(const Shape& shape, const Ray& ray) {
+  std::optional<PrimitiveHit> first;
+  for (int i = 0; i < shape.PrimitiveCount(); ++i) {
+    std::optional<PrimitiveHit> hit = shape.Intersect(ray, i);
+    if (hit && (!first || hit->t < first->t)) {
+      first = hit;
+      first->primitive = i;
+    }
+  }
+  if (!first) return std::nullopt;
+  SurfaceInteraction interaction = shape.Interact(ray, *first);
+  interaction.primitive = first->primitive;
+  return interaction;
+}
+
+std::vector<LightCase> AllLights() {
+  std::vector<LightCase> cases;
+  const auto add = [&](const std::string& name, std::unique_ptr<Light> light) {
+    cases.push_back({name, nullptr, std::move(light)});
+  };
+  add("point", std::make_unique<PointLight>(Vec3(1, 0, 2), Color(3, 2, 1)));
+  for (const SpotFalloff falloff : {SpotFalloff::PbrtV3, SpotFalloff::PbrtV4}) {
+    const std::string version = falloff == SpotFalloff::PbrtV3 ? " v3" : " v4";
+    for (const Vec2d& angles : {Vec2d(0.01, 0.005), Vec2d(30, 25), Vec2d(30, 0), Vec2d(30, 30), Vec2d(120, 80),
+                                Vec2d(180, 0), Vec2d(180, 180)}) {
+      add("spot " + std::to_string(angles.x) + " " + std::to_string(angles.y) + version,
+          std::make_unique<SpotLight>(Vec3(1, 0, 2), Vec3(-0.2f, 0.1f, -2), Color(3, 2, 1), angles.x, angles.y,
+                                      falloff));
+    }
+  }
+  add("distant", std::make_unique<DistantLight>(Vec3(1, 2, -4), Color(3, 2, 1)));
+  add("uniform environment", std::make_unique<UniformEnvironmentLight>(Color(3, 2, 1)));
+  using Mapping = EnvironmentMapping;
+  add("lat-long environment", std::make_unique<EnvironmentLight>(RandomEnvironment(16, 8, 1), SomeRotation(),
+                                                                 Color(1, 0.5f, 2), Mapping::LatLong));
+  add("lat-long environment of one pixel",
+      std::make_unique<EnvironmentLight>(RandomEnvironment(1, 1, 2), SomeRotation(), Color(1), Mapping::LatLong));
+  add("equal-area environment",
+      std::make_unique<EnvironmentLight>(RandomEnvironment(8, 8, 3), SomeRotation(), Color(1), Mapping::EqualArea));
+  AddAreaLights(&cases);
+  for (LightCase& c : cases) c.light->Prepare(kTestExtent);
+  return cases;
+}
+
+}  // namespace dapple

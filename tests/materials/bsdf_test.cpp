@@ -1,0 +1,334 @@
+#include "src/materials/bsdf.h"
+
+#include <array>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/materials/bsdf_cases.h"
+#include "tests/support/chi_square.h"
+
+namespace dapple {
+namespace {
+
+using testing::Direction;
+using testing::MakeBsdf;
+using testing::TiltedHit;
+using testing::WeightedLobes;
+
+constexpr TransportMode kModes[] = {TransportMode::Radiance, TransportMode::Importance};
+constexpr float kTilts[] = {0, 0.4f};
+/// Above and below the surface; the last two of which a tilted shading normal sees from the other side.
+const Vec3 kOutgoing[] = {Direction(0.9f, 0.3f), Direction(0.4f, 2), Direction(-0.6f, 4), Direction(0.15f, 3.9f),
+                          Direction(-0.2f, 0.5f)};
+
+std::mt19937_64 Random(uint64_t seed) { return std::mt19937_64(seed); }
+double Uniform(std::mt19937_64& random) { return std::uniform_real_distribution<double>(0, 1)(random); }
+Vec3 UniformDirection(std::mt19937_64& random) {
+  const double z = 2 * Uniform(random) - 1, phi = 2 * kPiD * Uniform(random);
+  return Direction(static_cast<float>(z), static_cast<float>(phi));
+}
+
+class NonSpecularBsdf : public ::testing::TestWithParam<WeightedLobes> {};
+
+INSTANTIATE_TEST_SUITE_P(Lobes, NonSpecularBsdf, ::testing::ValuesIn(testing::NonSpecularCases()),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST_P(NonSpecularBsdf, SamplesFollowThePdf) {
+  // One percent for all lobes, modes, frames and directions together.
+  const int tests = static_cast<int>(testing::NonSpecularCases().size() * 2 * std::size(kTilts) * 3);
+  const double level = testing::SidakLevel(0.01, tests);
+  uint64_t seed = 100;
+  for (const float tilt : kTilts) {
+    const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
+    for (const TransportMode mode : kModes) {
+      for (const int i : mode == TransportMode::Radiance ? std::array{0, 2, 3} : std::array{1, 2, 4}) {
+        const Vec3 wo = kOutgoing[i];
+        const auto sample = [&](double uc, const Vec2d& u) -> std::optional<Vec3> {
+          const auto s = bsdf.Sample(wo, uc, u, mode);
+          if (!s || s->IsSpecular()) return std::nullopt;
+          return s->wi;
+        };
+        const auto pdf = [&](const Vec3& wi) {
+          // Directions that scatter nothing are not returned.
+          return bsdf.Eval(wo, wi, mode).IsBlack() ? 0 : bsdf.Pdf(wo, wi, mode);
+        };
+        const auto fit =
+            testing::ChiSquareOnSphere(sample, pdf, {.samples = 30'000, .rows = 16, .columns = 24, .seed = seed++});
+        EXPECT_GT(fit.pValue, level) << fit.message << ", tilt " << tilt << ", wo " << wo.x << " " << wo.y << " "
+                                     << wo.z << ", mode " << static_cast<int>(mode);
+      }
+    }
+  }
+}
+
+TEST_P(NonSpecularBsdf, SampleAgreesWithEvalAndPdf) {
+  auto random = Random(5);
+  for (const float tilt : kTilts) {
+    const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
+    for (const TransportMode mode : kModes) {
+      for (int i = 0; i < 2000; ++i) {
+        const Vec3 wo = UniformDirection(random);
+        const double uc = Uniform(random);
+        const auto s = bsdf.Sample(wo, uc, {Uniform(random), Uniform(random)}, mode);
+        if (!s || s->IsSpecular()) continue;
+        ASSERT_NEAR(Length(s->wi), 1, 2e-6f);
+        ASSERT_TRUE(s->weight.IsFinite());
+        if (std::abs(s->wi.z) < 1e-3f || std::abs(Dot(s->wi, bsdf.ShadingFrame().n)) < 1e-3f) continue;
+        const float pdf = bsdf.Pdf(wo, s->wi, mode);
+        const Color eval = bsdf.Eval(wo, s->wi, mode);
+        EXPECT_NEAR(pdf / s->pdf, 1, 2e-3f);
+        EXPECT_NEAR(eval.g / (s->weight.g * s->pdf), 1, 2e-3f);
+        // The geometric normal tells reflection from transmission.
+        EXPECT_EQ(s->flags.HasReflection(), s->wi.z * wo.z > 0);
+      }
+    }
+  }
+}
+
+TEST_P(NonSpecularBsdf, ModesAreAdjoint) {
+  // Eval(wo, wi, Importance) = f(wi, wo) |ns.wo| |ng.wi| / |ng.wo| (Veach 1997, equation 5.19), where f(wi, wo) |ns.wo|
+  // is Eval(wi, wo, Radiance).
+  auto random = Random(6);
+  for (const float tilt : kTilts) {
+    const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 wo = UniformDirection(random), wi = UniformDirection(random);
+      const float importance = bsdf.Eval(wo, wi, TransportMode::Importance).g * std::abs(wo.z);
+      const float radiance = bsdf.Eval(wi, wo, TransportMode::Radiance).g * std::abs(wi.z);
+      EXPECT_NEAR(importance, radiance, 2e-3f * radiance + 2e-6f);
+    }
+  }
+}
+
+TEST_P(NonSpecularBsdf, IsReciprocal) {
+  // f(wo, wi) n_i^2 = f(wi, wo) n_o^2 (Veach 1997, equation 5.14), with f = Eval / |ns.wi|.
+  auto random = Random(7);
+  for (const float tilt : kTilts) {
+    const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
+    const Vec3 ns = bsdf.ShadingFrame().n;
+    // Lobes of transmission that do not refract keep to n = 1: only pure interfaces have an index of their own.
+    const bool isMixed = GetParam().lobes.size() > 1;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 wo = UniformDirection(random), wi = UniformDirection(random);
+      if (isMixed && wo.z * wi.z < 0) continue;
+      const auto n2 = [&](const Vec3& w) { return w.z > 0 ? 1 : Sqr(GetParam().etaBelow); };
+      const float there = bsdf.Eval(wo, wi, TransportMode::Radiance).g / AbsDot(wi, ns) * n2(wi);
+      const float back = bsdf.Eval(wi, wo, TransportMode::Radiance).g / AbsDot(wo, ns) * n2(wo);
+      EXPECT_NEAR(there, back, 5e-3f * back + 5e-6f);
+    }
+  }
+}
+
+TEST_P(NonSpecularBsdf, ReflectsNoMoreThanArrives) {
+  // Flux on the light's side (importance): no more leaves than came, whatever the indices.
+  if (GetParam().name == "PlasticGloss" || GetParam().name == "Plastic") return;  // pbrt-v3's is no energy model
+  const Bsdf bsdf = MakeBsdf(GetParam(), 0);
+  auto random = Random(8);
+  for (const Vec3& wo : kOutgoing) {
+    Color sum;
+    constexpr int kSamples = 20'000;
+    for (int i = 0; i < kSamples; ++i) {
+      const double uc = Uniform(random);
+      const auto s = bsdf.Sample(wo, uc, {Uniform(random), Uniform(random)}, TransportMode::Importance);
+      if (s) sum += s->weight;
+    }
+    EXPECT_LE((sum / kSamples).MaxComponent(), 1.01f) << wo.z;
+    EXPECT_GT((sum / kSamples).MaxComponent(), 0.01f) << wo.z;
+  }
+}
+
+TEST_P(NonSpecularBsdf, SamplingAndQuadratureAgree) {
+  const Bsdf bsdf = MakeBsdf(GetParam(), 0.4f);
+  auto random = Random(9);
+  for (const TransportMode mode : kModes) {
+    const Vec3 wo = kOutgoing[1];
+    constexpr int kSamples = 40'000;
+    double sum = 0, sumOfSquares = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double uc = Uniform(random);
+      const auto s = bsdf.Sample(wo, uc, {Uniform(random), Uniform(random)}, mode);
+      const double x = s && !s->IsSpecular() ? static_cast<double>(s->weight.g) : 0;
+      sum += x;
+      sumOfSquares += x * x;
+    }
+    const double mean = sum / kSamples, sigma = std::sqrt((sumOfSquares / kSamples - mean * mean) / kSamples);
+    const double expected =
+        testing::IntegrateSphere([&](const Vec3& wi) { return static_cast<double>(bsdf.Eval(wo, wi, mode).g); });
+    // Sixteen lobes, two modes: five sigma is one in a hundred thousand.
+    EXPECT_NEAR(mean, expected, 5 * sigma + 1e-3 * expected);
+  }
+}
+
+TEST(Bsdf, LambertianAlbedoIsKeptByAnyShadingNormal) {
+  for (const float tilt : {0.f, 0.3f, 1.2f}) {
+    Bsdf bsdf(TiltedHit(tilt));
+    bsdf.Add(LambertianReflection{Color(0.7f)});
+    for (const Vec3& wo : kOutgoing) {
+      const double albedo = testing::IntegrateSphere(
+          [&](const Vec3& wi) { return static_cast<double>(bsdf.Eval(wo, wi, TransportMode::Radiance).g); });
+      EXPECT_NEAR(albedo, 0.7, 1e-3);
+    }
+  }
+}
+
+TEST(Bsdf, NothingLeaksThroughAnOpaqueSurface) {
+  auto random = Random(10);
+  for (const WeightedLobes& lobes : testing::NonSpecularCases()) {
+    const Bsdf bsdf = MakeBsdf(lobes, 1);
+    if (bsdf.Flags().HasTransmission()) continue;
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 wo = UniformDirection(random), wi = UniformDirection(random);
+      if (wo.z * wi.z < 0) {
+        EXPECT_TRUE(bsdf.Eval(wo, wi, TransportMode::Radiance).IsBlack());
+      }
+      const double uc = Uniform(random);
+      const auto s = bsdf.Sample(wo, uc, {Uniform(random), Uniform(random)}, TransportMode::Radiance);
+      if (s) {
+        EXPECT_GT(s->wi.z * wo.z, 0);
+      }
+    }
+  }
+}
+
+TEST(Bsdf, LosslessGlassKeepsAllFlux) {
+  auto random = Random(11);
+  for (const Lobe& lobe : {Lobe(SmoothDielectric(1.5f)), Lobe(SmoothDielectric(1 / 1.33f)), Lobe(ThinDielectric(1.5f)),
+                           Lobe(MirrorReflection(Color(1))), Lobe(PassThrough()), Lobe(SmoothDielectric(1))}) {
+    Bsdf bsdf(TiltedHit(0));
+    bsdf.Add(lobe);
+    EXPECT_TRUE(bsdf.IsPurelySpecular());
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 wo = UniformDirection(random);
+      const auto flux = bsdf.Sample(wo, Uniform(random), {0.5, 0.5}, TransportMode::Importance);
+      ASSERT_TRUE(flux);
+      EXPECT_NEAR(flux->weight.g, 1, 1e-6f);  // every walk goes on with all that it carries
+      const auto radiance = bsdf.Sample(wo, Uniform(random), {0.5, 0.5}, TransportMode::Radiance);
+      ASSERT_TRUE(radiance);
+      EXPECT_NEAR(radiance->weight.g * Sqr(radiance->eta), 1, 2e-6f);
+      EXPECT_EQ(radiance->flags.HasTransmission(), radiance->wi.z * wo.z < 0);
+      EXPECT_TRUE(bsdf.Eval(wo, flux->wi, TransportMode::Radiance).IsBlack());
+      EXPECT_EQ(bsdf.Pdf(wo, flux->wi, TransportMode::Radiance), 0);
+    }
+  }
+}
+
+TEST(Bsdf, GlassDividesLightByFresnel) {
+  Bsdf bsdf(TiltedHit(0));
+  bsdf.Add(SmoothDielectric(1.5f));
+  const Vec3 wo = Direction(0.3f, 1);
+  const float fresnel = FresnelDielectric(0.3f, 1.5f);
+  const auto reflected = bsdf.Sample(wo, 0.99 * static_cast<double>(fresnel), {0, 0}, TransportMode::Radiance);
+  const auto refracted = bsdf.Sample(wo, 1.01 * static_cast<double>(fresnel), {0, 0}, TransportMode::Radiance);
+  EXPECT_NEAR(reflected->pdf, fresnel, 1e-6f);
+  EXPECT_LT(Distance(reflected->wi, Vec3(-wo.x, -wo.y, wo.z)), 1e-6f);
+  EXPECT_NEAR(refracted->pdf, 1 - fresnel, 1e-6f);
+  EXPECT_NEAR(std::hypot(refracted->wi.x, refracted->wi.y) * 1.5f, std::hypot(wo.x, wo.y), 1e-6f);
+  EXPECT_EQ(refracted->eta, 1.5f);
+}
+
+TEST(Bsdf, SpecularWalksAreAdjointUnderBentNormals) {
+  // The measurement <h, K g> is the same whichever end the walk starts from; g, h smooth functions on both sides.
+  // Radiance walks estimate the integral of h(wo) |ng.wo| K g(wo), light walks that of g(wi) |ng.wi| K* h(wi).
+  const auto g = [](const Vec3& w) { return 1 + 0.5 * static_cast<double>(w.x) + 0.3 * static_cast<double>(w.z); };
+  const auto h = [](const Vec3& w) { return 1 - 0.4 * static_cast<double>(w.y) + 0.2 * static_cast<double>(w.z); };
+  for (const Lobe& lobe : {Lobe(MirrorReflection(Color(0.9f))), Lobe(SmoothDielectric(1.5f))}) {
+    Bsdf bsdf(TiltedHit(0.5f));
+    bsdf.Add(lobe);
+    auto random = Random(12);
+    constexpr int kSamples = 200'000;
+    double mean[2] = {}, square[2] = {};
+    for (int i = 0; i < kSamples; ++i) {
+      for (const TransportMode mode : kModes) {
+        const bool fromEye = mode == TransportMode::Radiance;
+        const Vec3 wo = UniformDirection(random);
+        const auto s = bsdf.Sample(wo, Uniform(random), {0, 0}, mode);
+        if (!s) continue;
+        const double here = fromEye ? h(wo) : g(wo), there = fromEye ? g(s->wi) : h(s->wi);
+        const double x = here * std::abs(static_cast<double>(wo.z)) * there * static_cast<double>(s->weight.g);
+        mean[!fromEye] += x / kSamples;
+        square[!fromEye] += x * x / kSamples;
+      }
+    }
+    const double sigma = std::sqrt((square[0] + square[1] - Sqr(mean[0]) - Sqr(mean[1])) / kSamples);
+    EXPECT_NEAR(mean[0], mean[1], 4 * sigma);
+    EXPECT_LT(sigma, 0.01 * mean[0]);
+  }
+}
+
+TEST(Bsdf, RoughLobesBecomeSmoothOnes) {
+  auto random = Random(13);
+  const Color eta(0.2f, 0.9f, 1.1f), k(3.9f, 2.45f, 2.14f);
+  Bsdf metal(TiltedHit(0)), glass(TiltedHit(0));
+  metal.Add(RoughConductor{Ggx(1e-3f, 1e-3f), eta, k});
+  glass.Add(RoughDielectric{Ggx(1e-3f, 1e-3f), 1.5f, Color(1), Color(1)});
+  for (const float c : {0.95f, 0.4f, -0.8f}) {
+    const Vec3 wo = Direction(c, 1);
+    constexpr int kSamples = 4000;
+    Color fromMetal;
+    float reflected = 0, all = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const Vec2d u(Uniform(random), Uniform(random));
+      const double uc = (i + Uniform(random)) / kSamples;
+      const auto m = metal.Sample(wo, uc, u, TransportMode::Importance);
+      if (m) {
+        fromMetal += m->weight / kSamples;
+      }
+      const auto d = glass.Sample(wo, uc, u, TransportMode::Importance);
+      if (!d) continue;
+      all += d->weight.g / kSamples;
+      if (d->flags.HasReflection()) reflected += d->weight.g / kSamples;
+    }
+    const Color smooth = FresnelConductor(c, eta, k);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(fromMetal[i], smooth[i], 2e-3f);
+    EXPECT_NEAR(reflected, FresnelDielectric(c, 1.5f), 2e-3f);
+    EXPECT_NEAR(all, 1, 2e-3f);
+  }
+}
+
+TEST(Bsdf, MixedLambertiansAreOne) {
+  Bsdf bsdf(TiltedHit(0));
+  bsdf.Add(LambertianReflection{Color(0.5f)}, Color(0.4f));
+  bsdf.Add(LambertianReflection{Color(0.2f)}, Color(0.6f));
+  const Vec3 wo = Direction(0.5f, 0), wi = Direction(0.7f, 2);
+  EXPECT_NEAR(bsdf.Eval(wo, wi, TransportMode::Radiance).g, (0.2f + 0.12f) * kInvPi * 0.7f, 1e-7f);
+  EXPECT_NEAR(bsdf.Albedo(wo).g, 0.32f, 1e-7f);
+}
+
+TEST(Bsdf, BlackLobesAreLeftOut) {
+  Bsdf bsdf(TiltedHit(0));
+  bsdf.Add(LambertianReflection{Color()});
+  bsdf.Add(MirrorReflection(Color(1)), Color());
+  EXPECT_TRUE(bsdf.IsBlack());
+  EXPECT_TRUE(bsdf.Flags().IsEmpty());
+  EXPECT_FALSE(bsdf.Sample(Direction(0.5f, 0), 0.5, {0.5, 0.5}, TransportMode::Radiance));
+  EXPECT_EQ(bsdf.Pdf(Direction(0.5f, 0), Direction(0.5f, 1), TransportMode::Radiance), 0);
+}
+
+TEST(Bsdf, SurvivesGrazingAndExtremeInput) {
+  auto random = Random(14);
+  for (const WeightedLobes& lobes : testing::NonSpecularCases()) {
+    for (const float tilt : kTilts) {
+      const Bsdf bsdf = MakeBsdf(lobes, tilt);
+      for (const float z : {0.f, 1e-30f, -1e-20f, 1e-7f, -1e-4f, 1.f, -1.f}) {
+        for (int i = 0; i < 50; ++i) {
+          const Vec3 wo = Direction(z, static_cast<float>(6 * Uniform(random)));
+          for (const TransportMode mode : kModes) {
+            const double uc = Uniform(random);
+            const Vec2d u = i == 0 ? Vec2d(0, 0) : i == 1 ? Vec2d(1, 1) : Vec2d(Uniform(random), Uniform(random));
+            const auto s = bsdf.Sample(wo, uc, u, mode);
+            if (s) {
+              EXPECT_TRUE(s->weight.IsFinite() && std::isfinite(s->pdf) && s->pdf > 0 && IsFinite(s->wi)) << lobes.name;
+            }
+            const Vec3 wi = i % 2 ? UniformDirection(random) : -wo;
+            EXPECT_TRUE(bsdf.Eval(wo, wi, mode).IsFinite()) << lobes.name << " z " << z;
+            EXPECT_TRUE(std::isfinite(bsdf.Pdf(wo, wi, mode))) << lobes.name << " z " << z;
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dapple

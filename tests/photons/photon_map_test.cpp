@@ -1,0 +1,122 @@
+#include "src/photons/photon_map.h"
+
+#include <algorithm>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "src/photons/kernel.h"
+#include "src/photons/radius_schedule.h"
+
+namespace dapple {
+namespace {
+
+std::vector<Vec3> UniformCloud(size_t count, uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) p = {uniform(random), uniform(random), uniform(random)};
+  return points;
+}
+
+std::vector<int> Numbers(size_t count) {
+  std::vector<int> numbers(count);
+  for (size_t i = 0; i < count; ++i) numbers[i] = static_cast<int>(i);
+  return numbers;
+}
+
+std::vector<int> Within(const PhotonMap<int>& map, const Vec3& p, float radius) {
+  std::vector<int> found;
+  map.ForEachWithin(p, radius, [&](const Vec3&, int photon, float) { found.push_back(photon); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+TEST(PhotonMap, FindsJustThePhotonsWithinTheRadius) {
+  const std::vector<Vec3> points = UniformCloud(50000, 1);
+  const PhotonMap<int> map(points, Numbers(points.size()));
+  ASSERT_EQ(map.Size(), points.size());
+  for (const Vec3& p : UniformCloud(40, 2))
+    for (float radius : {0.01f, 0.1f, 0.4f, 4.f}) {
+      std::vector<int> expected;
+      for (size_t i = 0; i < points.size(); ++i)
+        if (DistanceSquared(points[i], p) < radius * radius) expected.push_back(static_cast<int>(i));
+      EXPECT_EQ(Within(map, p, radius), expected);
+    }
+}
+
+TEST(PhotonMap, VisitsPayloadsWithTheirOwnPositionsAndDistances) {
+  const std::vector<Vec3> points = UniformCloud(30000, 3);
+  const PhotonMap<int> map(points, Numbers(points.size()));
+  const Vec3 center(0.1f, -0.2f, 0.3f);
+  int visited = 0;
+  map.ForEachWithin(center, 0.5f, [&](const Vec3& p, int photon, float distanceSquared) {
+    ++visited;
+    EXPECT_EQ(p, points[static_cast<size_t>(photon)]);
+    EXPECT_FLOAT_EQ(distanceSquared, DistanceSquared(p, center));
+  });
+  EXPECT_GT(visited, 1000);
+}
+
+TEST(PhotonMap, EmptyMapFindsNothing) {
+  const PhotonMap<int> map({}, {});
+  EXPECT_TRUE(Within(map, Vec3(0), 1e10f).empty());
+  EXPECT_TRUE(Within(PhotonMap<int>(), Vec3(0), 1e10f).empty());
+}
+
+TEST(PhotonMap, PhotonsAtOnePointOrOnALineAreFoundAndBuildQuickly) {
+  constexpr size_t kCount = 1000000;
+  const PhotonMap<int> point(std::vector<Vec3>(kCount, Vec3(1, 2, 3)), Numbers(kCount));
+  EXPECT_EQ(Within(point, Vec3(1, 2, 3), 1e-3f).size(), kCount);
+  EXPECT_TRUE(Within(point, Vec3(1, 2, 3.01f), 1e-3f).empty());
+
+  std::vector<Vec3> positions(kCount);
+  for (size_t i = 0; i < kCount; ++i) positions[i] = Vec3(static_cast<float>(i) * 0x1p-20f, 0, 0);
+  const PhotonMap<int> line(positions, Numbers(kCount));
+  EXPECT_EQ(Within(line, Vec3(0.5f, 0, 0), 0x1.8p-20f).size(), 3u);
+}
+
+TEST(PhotonMap, OrderDoesNotDependOnThreads) {
+  const std::vector<Vec3> points = UniformCloud(200000, 4);
+  std::vector<int> order[2];
+  for (int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    const PhotonMap<int> map(points, Numbers(points.size()));
+    map.ForEachWithin(Vec3(0), 10, [&](const Vec3&, int photon, float) { order[threads / 2].push_back(photon); });
+  }
+  EXPECT_EQ(order[0].size(), points.size());
+  EXPECT_EQ(order[0], order[1]);
+}
+
+TEST(PhotonMap, StaysWithinItsBytesPerPhoton) {
+  constexpr size_t kCount = 1000000;
+  const PhotonMap<int> map(UniformCloud(kCount, 5), Numbers(kCount));
+  EXPECT_LT(map.MemoryBytes(), static_cast<int64_t>(kCount) * 40);
+}
+
+TEST(EpanechnikovKernel, IntegratesToOneOverItsDisk) {
+  constexpr float kRadius = 0.37f;
+  const EpanechnikovKernel kernel(kRadius);
+  double sum = 0;
+  constexpr int kSteps = 100000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double d = kRadius * (i + 0.5) / kSteps;
+    sum += kernel(static_cast<float>(d * d)) * 2 * kPiD * d * kRadius / kSteps;
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);
+  EXPECT_NEAR(kernel(kRadius * kRadius), 0, 1e-5);
+}
+
+TEST(RadiusSchedule, FollowsTheRecurrenceAndPairsPasses) {
+  constexpr double kAlpha = 0.7;
+  double radiusSquared = 1;
+  for (int i = 1; i < 200; ++i) {
+    const int pass = 2 * (i - 1);
+    EXPECT_NEAR(Sqr(RadiusFactor(pass, kAlpha)), radiusSquared, 1e-5 * radiusSquared);
+    EXPECT_EQ(RadiusFactor(pass, kAlpha), RadiusFactor(pass + 1, kAlpha));
+    radiusSquared *= (i + kAlpha) / (i + 1);
+  }
+}
+
+}  // namespace
+}  // namespace dapple

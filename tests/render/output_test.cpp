@@ -1,0 +1,113 @@
+#include "src/render/output.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "src/base/error.h"
+#include "src/render/version.h"
+
+namespace dapple {
+namespace {
+
+std::string TempPath(const std::string& name) {
+  const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
+  return testing::TempDir() + "/output_" + test->name() + "_" + name;
+}
+
+std::string ReadBytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Image SmallImage() {
+  Image image = Image::Rgb(3, 2);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x) image.SetColor(x, y, Color(0.1f * static_cast<float>(x), 0.5f, 3.25f));
+  return image;
+}
+
+RenderRecord SmallRecord() {
+  return {.scene = "ring.pbrt", .integrator = "sppm", .seed = 7, .passes = 16, .seconds = {}};
+}
+
+/// The text of the error that `action` throws.
+template <typename F>
+std::string MessageOf(F action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Output, ExrKeepsPixelsAndRecord) {
+  const std::string path = TempPath("image.exr");
+  const Image image = SmallImage();
+  WriteOutput(path, image, ToMetadata(SmallRecord()));
+  const Image read = ReadImage(path);
+  EXPECT_TRUE(std::ranges::equal(read.Values(), image.Values()));
+  const ImageMetadata metadata = ReadExrMetadata(path);
+  EXPECT_EQ(std::get<std::string>(metadata.at("scene")), "ring.pbrt");
+  EXPECT_EQ(std::get<std::string>(metadata.at("integrator")), "sppm");
+  EXPECT_EQ(std::get<int>(metadata.at("seed")), 7);
+  EXPECT_EQ(std::get<int>(metadata.at("passes")), 16);
+  EXPECT_EQ(std::get<std::string>(metadata.at("version")), Version());
+  EXPECT_EQ(std::get<std::string>(metadata.at("instructionSet")), InstructionSet());
+  EXPECT_FALSE(metadata.contains("seconds")) << "a measurement would make each file another";
+}
+
+TEST(Output, SecondsAreRecordedWhereTheyAreGiven) {
+  const std::string path = TempPath("image.exr");
+  RenderRecord record = SmallRecord();
+  record.seconds = 12.5;
+  WriteOutput(path, SmallImage(), ToMetadata(record));
+  EXPECT_EQ(std::get<double>(ReadExrMetadata(path).at("seconds")), 12.5);
+}
+
+TEST(Output, TheSameImageGivesTheSameFile) {
+  for (const char* name : {"image.exr", "image.png"}) {
+    const std::string a = TempPath(std::string("a_") + name), b = TempPath(std::string("b_") + name);
+    WriteOutput(a, SmallImage(), ToMetadata(SmallRecord()));
+    WriteOutput(b, SmallImage(), ToMetadata(SmallRecord()));
+    EXPECT_FALSE(ReadBytes(a).empty());
+    EXPECT_EQ(ReadBytes(a), ReadBytes(b));
+  }
+}
+
+TEST(Output, ThePictureIsTheMeanOfThePassesTimesTheExposure) {
+  Film film({1, 1}, {{0, 0}, {1, 1}}, Filter::Box());
+  for (int pass = 0; pass < 2; ++pass) {
+    film.AddSample({0, 0}, Color(1, 2, static_cast<float>(pass)), pass);
+    film.FinishPass(pass);
+  }
+  RenderSettings settings;
+  settings.exposure = 4;
+  EXPECT_EQ(ToPicture(film, settings).ColorAt(0, 0), Color(4, 8, 2));
+}
+
+TEST(Output, PngIsChosenByTheExtensionInAnyCase) {
+  const std::string path = TempPath("IMAGE.PNG");
+  WriteOutput(path, SmallImage(), {});
+  EXPECT_EQ(ReadBytes(path).substr(1, 3), "PNG");
+}
+
+TEST(Output, RefusesWhatCannotBeWrittenBeforeTheWork) {
+  EXPECT_NO_THROW(CheckOutput(TempPath("image.exr")));
+  EXPECT_NO_THROW(CheckOutput("image.png")) << "the current folder";
+  const std::string tiff = TempPath("image.tiff");
+  EXPECT_EQ(MessageOf([&] { CheckOutput(tiff); }),
+            tiff + ": error: expected a file name that ends in .exr or .png, not in '.tiff'");
+  EXPECT_NE(MessageOf([] { CheckOutput("image"); }), "no error");
+  const std::string missing = testing::TempDir() + "/no/such/folder/image.exr";
+  EXPECT_NE(MessageOf([&] { CheckOutput(missing); }).find("does not exist"), std::string::npos);
+  const std::string folder = TempPath("folder.exr");
+  std::filesystem::create_directory(folder);
+  EXPECT_NE(MessageOf([&] { CheckOutput(folder); }).find("is a folder"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dapple

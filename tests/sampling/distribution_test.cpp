@@ -1,0 +1,161 @@
+#include "src/sampling/distribution.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace dapple {
+namespace {
+
+constexpr double kBelowOne = 0x1.fffffffffffffp-1;
+
+Distribution1D Make(const std::vector<double>& weights) { return Distribution1D(std::span<const double>(weights)); }
+
+std::vector<double> RandomNumbers(int count) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<double> numbers = {0, 0x1p-53, 0.5, kBelowOne};
+  for (int i = 0; i < count; ++i) numbers.push_back(uniform(random));
+  return numbers;
+}
+
+// Tables that are hard in some way: zeros at the ends and in runs, one cell, one bright cell, many cells.
+std::vector<std::vector<double>> Tables() {
+  std::vector<double> bright(1000, 1e-3), large(100000);
+  bright[371] = 1e6;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-0.5, 1);
+  for (double& w : large) w = std::max(0.0, uniform(random));
+  return {{1}, {0, 1}, {1, 0}, {0, 0, 3, 0, 0, 1, 0}, {1, 2, 3, 4}, {1e-300, 3e-300}, {1e300, 1e300}, bright, large};
+}
+
+TEST(Distribution1D, CellsAreDrawnByTheirShare) {
+  for (const std::vector<double>& weights : Tables()) {
+    const Distribution1D distribution = Make(weights);
+    double sum = 0, before = 0;
+    for (double w : weights) sum += w;
+    for (int i = 0; i < distribution.Size(); ++i) {
+      const double share = weights[static_cast<size_t>(i)] / sum;
+      ASSERT_NEAR(distribution.Probability(i), share, 1e-14);
+      if (share > 1e-12) {
+        // The interval of random numbers that gives the cell is as long as its share, and stands in the cells' order.
+        EXPECT_EQ(distribution.SampleDiscrete(before + share / 2).index, i);
+      }
+      before += share;
+    }
+    EXPECT_NEAR(before, 1, 1e-9);
+  }
+}
+
+TEST(Distribution1D, ZeroCellsAreNeverDrawn) {
+  for (const std::vector<double>& weights : Tables()) {
+    const Distribution1D distribution = Make(weights);
+    for (double u : RandomNumbers(10000)) {
+      const DiscreteSample drawn = distribution.SampleDiscrete(u);
+      ASSERT_GT(weights[static_cast<size_t>(drawn.index)], 0) << u;
+      ASSERT_GT(drawn.probability, 0);
+      ASSERT_TRUE(drawn.u >= 0 && drawn.u < 1);
+    }
+  }
+}
+
+TEST(Distribution1D, DensityOfADrawIsThatOfItsPlaceBitForBit) {
+  for (const std::vector<double>& weights : Tables()) {
+    const Distribution1D distribution = Make(weights);
+    for (double u : RandomNumbers(10000)) {
+      const ContinuousSample sample = distribution.SampleContinuous(u);
+      ASSERT_EQ(sample.pdf, distribution.Pdf(sample.x));
+      ASSERT_EQ(sample.index, distribution.CellOf(sample.x));
+      ASSERT_TRUE(sample.x >= 0 && sample.x < 1);
+      const DiscreteSample discrete = distribution.SampleDiscrete(u);
+      ASSERT_EQ(discrete.probability, distribution.Probability(discrete.index));
+    }
+  }
+}
+
+TEST(Distribution1D, InverseLeadsBack) {
+  for (const std::vector<double>& weights : Tables()) {
+    const Distribution1D distribution = Make(weights);
+    for (double u : RandomNumbers(10000)) {
+      const DiscreteSample drawn = distribution.SampleDiscrete(u);
+      ASSERT_NEAR(distribution.InvertDiscrete(drawn.index, drawn.u), u, 4 * 0x1p-53);
+      // x is known to half an ulp of a number below 1: within a cell of probability p that is n p / 2 ulp of u.
+      const ContinuousSample sample = distribution.SampleContinuous(u);
+      const double scale = std::max(1.0, sample.pdf);
+      ASSERT_NEAR(distribution.Invert(sample.x), u, 4 * 0x1p-53 * scale);
+    }
+  }
+}
+
+TEST(Distribution1D, DensityIntegratesToOne) {
+  const Distribution1D distribution = Make({0, 2, 5, 0, 1});
+  double integral = 0;
+  for (int i = 0; i < 5000; ++i) integral += distribution.Pdf((i + 0.5) / 5000) / 5000;
+  EXPECT_NEAR(integral, 1, 1e-12);
+  EXPECT_GT(distribution.Pdf(1), 0);
+}
+
+TEST(Distribution1D, NothingIsDrawnWhereAllIsZero) {
+  const Distribution1D distribution = Make({0, 0, 0});
+  EXPECT_TRUE(distribution.IsZero());
+  EXPECT_EQ(distribution.SampleDiscrete(0.3).index, -1);
+  EXPECT_EQ(distribution.SampleContinuous(0.3).index, -1);
+  EXPECT_EQ(distribution.Pdf(0.3), 0);
+  EXPECT_TRUE(Distribution1D().IsZero());
+  EXPECT_TRUE(Make({}).IsZero());
+}
+
+Distribution2D Make(const std::vector<float>& weights, int width, int height) {
+  return Distribution2D(std::span<const float>(weights), width, height);
+}
+
+// Rows of zeros at both ends and in the middle, zero cells, one bright cell.
+Distribution2D HardTable() {
+  return Make({0, 0,    0,     0,  //
+               1, 2,    0,     0,  //
+               0, 0,    0,     0,  //
+               0, 1e6f, 0,     3,  //
+               0, 0,    1e-3f, 0,  //
+               0, 0,    0,     0},
+              4, 6);
+}
+
+TEST(Distribution2D, DrawDensityAndInverseAgree) {
+  for (const Distribution2D& table :
+       {HardTable(), Make({5}, 1, 1), Make({0, 0, 0, 1}, 2, 2), Make({1, 0, 0, 0}, 2, 2)}) {
+    const std::vector<double> numbers = RandomNumbers(10000);
+    for (size_t i = 0; i + 1 < numbers.size(); ++i) {
+      const Vec2d u(numbers[i], numbers[i + 1]);
+      const ContinuousSample2D sample = table.Sample(u);
+      ASSERT_GT(sample.pdf, 0);
+      ASSERT_EQ(sample.pdf, table.Pdf(sample.p));
+      const double scale = std::max(1.0, sample.pdf);
+      ASSERT_NEAR(table.Invert(sample.p).x, u.x, 8 * 0x1p-53 * scale);
+      ASSERT_NEAR(table.Invert(sample.p).y, u.y, 8 * 0x1p-53 * scale);
+      const DiscreteSample2D cell = table.SampleDiscrete(u);
+      ASSERT_EQ(cell.cell, sample.cell);
+      ASSERT_EQ(cell.probability, table.Probability(cell.cell));
+      ASSERT_NEAR(table.InvertDiscrete(cell.cell, cell.u).x, u.x, 4 * 0x1p-53);
+      ASSERT_NEAR(table.InvertDiscrete(cell.cell, cell.u).y, u.y, 4 * 0x1p-53);
+    }
+  }
+}
+
+TEST(Distribution2D, DensityIsTheWeightOverTheMean) {
+  const Distribution2D table = Make({1, 2, 3, 0, 5, 1}, 3, 2);
+  EXPECT_NEAR(table.Pdf({0.5, 0.25}), 2 / (12 / 6.0), 1e-14);
+  EXPECT_EQ(table.Pdf({0.1, 0.75}), 0);
+  EXPECT_NEAR(table.Pdf({1, 1}), 0.5, 1e-14);
+  EXPECT_NEAR(table.Sum(), 12, 1e-12);
+}
+
+TEST(Distribution2D, NothingIsDrawnWhereAllIsZero) {
+  const Distribution2D table = Make({0, 0}, 2, 1);
+  EXPECT_TRUE(table.IsZero());
+  EXPECT_EQ(table.Sample({0.5, 0.5}).cell.x, -1);
+  EXPECT_EQ(table.Pdf({0.5, 0.5}), 0);
+}
+
+}  // namespace
+}  // namespace dapple

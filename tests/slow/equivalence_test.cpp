@@ -1,0 +1,197 @@
+// All algorithms give the same picture: every scene in scenes/, block by block, within 1 % and three standard errors.
+//
+// Progressive photon mapping is blurred by its radius; its picture is extrapolated to radius zero from two radii. What
+// an algorithm cannot see is left out: light tracing where the camera looks at a smooth mirror or glass, path tracing
+// where a light without extent shines through them.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "src/io/build_scene.h"
+#include "src/io/pbrt_parser.h"
+#include "tests/support/grouped_render.h"
+
+namespace dapple {
+namespace {
+
+using namespace testing_support;
+
+constexpr int kGroups = 8;
+constexpr int kBlockSize = 32;
+constexpr double kTolerance = 0.01;
+
+std::filesystem::path SceneFolder() { return std::filesystem::path(DAPPLE_SOURCE_DIR) / "scenes"; }
+
+std::vector<std::string> SceneNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(SceneFolder()))
+    if (entry.path().extension() == ".pbrt") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+SceneParts PartsOf(const std::string& name) {
+  Diagnostics diagnostics([](const std::string& line) { ADD_FAILURE() << line; });
+  return BuildSceneParts(ParsePbrtFile(SceneFolder() / (name + ".pbrt"), {}, diagnostics), {}, diagnostics);
+}
+
+/// One flag a pixel: any of a few rays through it meets a surface that nothing but a specular lobe scatters at.
+std::vector<bool> PixelsOnSpecularSurfaces(const Scene& scene) {
+  const PixelBounds& crop = scene.Settings().crop;
+  std::vector<bool> flags;
+  for (int y = crop.min.y; y < crop.max.y; ++y)
+    for (int x = crop.min.x; x < crop.max.x; ++x) {
+      bool specular = false;
+      for (const Vec2& offset : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(0.5f, 0.5f)}) {
+        const Vec2 film(static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y);
+        const auto hit = scene.Intersect(scene.GetCamera().GenerateRay(film, Vec2d(0.5), 0).ray);
+        const Material* material = hit ? scene.MaterialAt(*hit) : nullptr;
+        specular |= material && material->Facts().hasSpecular;
+      }
+      flags.push_back(specular);
+    }
+  return flags;
+}
+
+IntegratorOptions Options(double radiusInPixels = 1) {
+  IntegratorOptions options;
+  options.photonsPerPass = 200000;
+  options.radiusInPixels = radiusInPixels;
+  return options;
+}
+
+// The blur at the borders of surfaces grows with the radius: what is left at radius zero, to first order.
+GroupedImages SppmAtRadiusZero(const Scene& scene, int passes) {
+  const GroupedImages wide = RenderGroups(scene, "sppm", Options(1.2), passes, kGroups, 3);
+  const GroupedImages narrow = RenderGroups(scene, "sppm", Options(0.6), passes, kGroups, 4);
+  return Combine(narrow, 2, wide, -1);
+}
+
+bool PathSeesAll(const SceneFacts& facts) { return !(facts.hasDeltaLight && facts.hasSpecular); }
+
+class AllIntegratorsAgree : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(AllIntegratorsAgree, BlockByBlock) {
+  const Scene scene(PartsOf(GetParam()));
+  constexpr int kPasses = 128;
+  const GroupedImages sppm = SppmAtRadiusZero(scene, kPasses);
+  const auto expectAgreement = [](const std::string& what, const BlockReport& report) {
+    std::cout << what << ": " << report.text << "\n";
+    EXPECT_GT(report.blocks, 0) << what;
+    EXPECT_LE(report.worstExcess, 0) << what << ": " << report.text;
+  };
+  if (PathSeesAll(scene.Facts())) {
+    const GroupedImages path = RenderGroups(scene, "path", Options(), 4 * kPasses, kGroups, 1);
+    expectAgreement("sppm against path", CompareBlocks(sppm, path, kBlockSize, kTolerance));
+    if (scene.GetCamera().CanConnect()) {
+      const GroupedImages lightTracing = RenderGroups(scene, "light_tracing", Options(), 2 * kPasses, kGroups, 2);
+      expectAgreement("light tracing against path",
+                      CompareBlocks(lightTracing, path, kBlockSize, kTolerance, PixelsOnSpecularSurfaces(scene)));
+    }
+  } else if (scene.GetCamera().CanConnect()) {
+    const GroupedImages lightTracing = RenderGroups(scene, "light_tracing", Options(), 2 * kPasses, kGroups, 2);
+    expectAgreement("sppm against light tracing",
+                    CompareBlocks(sppm, lightTracing, kBlockSize, kTolerance, PixelsOnSpecularSurfaces(scene)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AllIntegratorsAgree, ::testing::ValuesIn(SceneNames()), [](const auto& scene) {
+  std::string name = scene.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+/// A light that sends `factor` times as much as it says of itself.
+class BrighterLight final : public Light {
+ public:
+  BrighterLight(std::unique_ptr<Light> light, float factor) : light_(std::move(light)), factor_(factor) {}
+
+  std::string_view Name() const override { return light_->Name(); }
+  bool IsDelta() const override { return light_->IsDelta(); }
+  bool IsInfinite() const override { return light_->IsInfinite(); }
+  void Prepare(const SceneExtent& extent) override { light_->Prepare(extent); }
+  Color Power() const override { return light_->Power(); }
+  std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override {
+    auto sample = light_->Sample_Li(at, u);
+    if (sample) sample->L *= factor_;
+    return sample;
+  }
+  double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override {
+    return light_->Pdf_Li(at, wi, hit);
+  }
+  LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override {
+    return light_->Invert_Li(at, wi, hit);
+  }
+  std::optional<LeSample> Sample_Le(const LeRandom& u) const override {
+    auto sample = light_->Sample_Le(u);
+    if (sample) sample->Le *= factor_;
+    return sample;
+  }
+  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override { return light_->Pdf_Le(ray, n); }
+  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override { return light_->Invert_Le(ray, n); }
+  Color Le(const Ray& ray) const override { return light_->Le(ray) * factor_; }
+  Color L(const SurfaceInteraction& hit, const Vec3& w) const override { return light_->L(hit, w) * factor_; }
+
+ private:
+  std::unique_ptr<Light> light_;
+  float factor_;
+};
+
+// The check above must be able to fail: two percent more from one light are found.
+TEST(AllIntegratorsAgree, TwoPercentMoreFromOneLightAreRejected) {
+  const std::string name = "box";
+  const Scene scene(PartsOf(name));
+  SceneParts faulty = PartsOf(name);
+  faulty.lights[0] = std::make_unique<BrighterLight>(std::move(faulty.lights[0]), 1.02f);
+  const Scene faultyScene(std::move(faulty));
+  constexpr int kPasses = 256;
+  const GroupedImages path = RenderGroups(scene, "path", Options(), kPasses, kGroups, 1);
+  const GroupedImages faultyPath = RenderGroups(faultyScene, "path", Options(), kPasses, kGroups, 2);
+  const GroupedImages faultyLight = RenderGroups(faultyScene, "light_tracing", Options(), kPasses, kGroups, 2);
+  EXPECT_GT(CompareBlocks(faultyPath, path, kBlockSize, kTolerance).worstExcess, 0);
+  EXPECT_GT(CompareBlocks(faultyLight, path, kBlockSize, kTolerance, PixelsOnSpecularSurfaces(scene)).worstExcess, 0);
+}
+
+// The flux in a caustic: the sum of the pixels of a region around it, by photons and by light tracing.
+class CausticFlux : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(CausticFlux, SppmAndLightTracingAgree) {
+  const Scene scene(PartsOf(GetParam()));
+  constexpr int kSppmPasses = 32;
+  const Image sppm = RenderGroups(scene, "sppm", Options(), kSppmPasses, 1, 5).Mean();
+  const Image light = RenderGroups(scene, "light_tracing", Options(), 4 * kSppmPasses, 1, 6).Mean();
+  const std::vector<bool> specular = PixelsOnSpecularSurfaces(scene);
+
+  // The caustic: pixels that light tracing finds over four times as bright as the middle one of the picture.
+  std::vector<float> brightness;
+  for (int y = 0; y < light.Height(); ++y)
+    for (int x = 0; x < light.Width(); ++x) brightness.push_back(light.ColorAt(x, y).Luminance());
+  std::vector<float> sorted = brightness;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<int64_t>(sorted.size() / 2), sorted.end());
+  const float threshold = 4 * sorted[sorted.size() / 2];
+  double sppmFlux = 0, lightFlux = 0;
+  int pixels = 0;
+  constexpr int kMargin = 4;  // what the photon map's radius spreads stays in the region
+  for (int y = kMargin; y < light.Height() - kMargin; ++y)
+    for (int x = kMargin; x < light.Width() - kMargin; ++x) {
+      bool near = false;
+      for (int dy = -kMargin; dy <= kMargin; ++dy)
+        for (int dx = -kMargin; dx <= kMargin; ++dx)
+          near |= brightness[static_cast<size_t>((y + dy) * light.Width() + x + dx)] > threshold;
+      if (!near || specular[static_cast<size_t>(y * light.Width() + x)]) continue;
+      ++pixels;
+      sppmFlux += sppm.ColorAt(x, y).Average();
+      lightFlux += light.ColorAt(x, y).Average();
+    }
+  ASSERT_GT(pixels, 100);
+  std::cout << pixels << " pixels of caustic, sppm / light tracing = " << sppmFlux / lightFlux << "\n";
+  EXPECT_NEAR(sppmFlux / lightFlux, 1, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(GlassSphere, CausticFlux, ::testing::Values("point-glass", "spot-glass"),
+                         [](const auto& scene) { return scene.param.substr(0, scene.param.find('-')); });
+
+}  // namespace
+}  // namespace dapple

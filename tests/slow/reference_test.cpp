@@ -1,0 +1,154 @@
+// Renders of the reference scenes against images that other renderers made of them.
+//
+// Runs where the environment names the folder of references (DAPPLE_REFERENCES); its README tells how they were made.
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "src/image/image_io.h"
+#include "src/io/build_scene.h"
+#include "tests/support/grouped_render.h"
+
+namespace dapple {
+namespace {
+
+using namespace testing_support;
+
+std::string ReferenceFolder() {
+  const char* folder = std::getenv("DAPPLE_REFERENCES");
+  return folder ? folder : "";
+}
+
+std::unique_ptr<Scene> Load(const std::string& file) {
+  Diagnostics diagnostics([](const std::string& line) { ADD_FAILURE() << line; });
+  return LoadScene(ReferenceFolder() + "/" + file, {}, diagnostics);
+}
+
+IntegratorOptions OptionsOf(const Scene& scene) {
+  IntegratorOptions options;
+  options.maxDepth = 32;
+  options.photonsPerPass = scene.Settings().photonsPerIteration;
+  return options;
+}
+
+struct Case {
+  std::string scene;      // the file, without its ending
+  std::string reference;  // the image, without its ending
+  std::string integrator;
+  int passes;
+  int blockSize = 32;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene << " " << c.integrator; }
+
+std::string NameOf(const ::testing::TestParamInfo<Case>& info) {
+  std::string name = info.param.scene + "_" + info.param.integrator;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+class Reference : public ::testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    if (ReferenceFolder().empty()) GTEST_SKIP() << "DAPPLE_REFERENCES does not name the folder of references";
+  }
+};
+
+constexpr int kGroups = 8;
+constexpr double kMeanTolerance = 0.01, kBlockTolerance = 0.02;
+
+class BlockMeansAgree : public Reference {};
+
+TEST_P(BlockMeansAgree, WithinTwoPercentAndThreeSigma) {
+  const Case& c = GetParam();
+  const auto scene = Load(c.scene + ".pbrt");
+  const GroupedImages images = RenderGroups(*scene, c.integrator, OptionsOf(*scene), c.passes, kGroups);
+  const GroupedImages reference = Exact(ReadImage(ReferenceFolder() + "/" + c.reference + ".exr"));
+  const BlockReport report = CompareBlocks(images, reference, c.blockSize, kBlockTolerance);
+  RecordProperty("report", report.text);
+  std::cout << report.text << "\n";
+  EXPECT_NEAR(report.meanRatio, 1, kMeanTolerance);
+  EXPECT_LE(report.worstExcess, 0) << report.text;
+}
+
+INSTANTIATE_TEST_SUITE_P(V3, BlockMeansAgree,
+                         ::testing::Values(Case{"cbox-v3", "cbox", "path", 256}, Case{"ring-v3", "ring", "path", 512},
+                                           Case{"envglass-v3", "envglass", "path", 128},
+                                           Case{"veach-v3", "veach", "path", 128}, Case{"cbox-v3", "cbox", "sppm", 128},
+                                           Case{"ring-v3", "ring", "sppm", 128}, Case{"lens-v3", "lens", "sppm", 128},
+                                           Case{"envglass-v3", "envglass", "sppm", 128}),
+                         NameOf);
+INSTANTIATE_TEST_SUITE_P(V4, BlockMeansAgree, ::testing::Values(Case{"veach-v4", "veach", "path", 128}), NameOf);
+INSTANTIATE_TEST_SUITE_P(OthersScenes, BlockMeansAgree,
+                         ::testing::Values(Case{"../data/killeroo-simple", "../data/killeroo-simple", "path", 128, 16},
+                                           Case{"../data/gold-teapot", "../data/gold-teapot", "path", 128, 16}),
+                         NameOf);
+
+// The check above must be able to fail: it rejects a picture without its caustic, and one with the caustic elsewhere.
+TEST_F(Reference, MissingCausticIsRejected) {
+  const auto scene = Load("lens-v3.pbrt");
+  const GroupedImages images = RenderGroups(*scene, "path", OptionsOf(*scene), 16, kGroups);
+  const BlockReport report =
+      CompareBlocks(images, Exact(ReadImage(ReferenceFolder() + "/lens.exr")), 32, kBlockTolerance);
+  EXPECT_GT(report.failed, 3) << report.text;
+}
+
+TEST_F(Reference, MisplacedCausticIsRejected) {
+  const auto scene = Load("ring-v3.pbrt");
+  const GroupedImages images = RenderGroups(*scene, "sppm", OptionsOf(*scene), 32, kGroups);
+  const Image reference = ReadImage(ReferenceFolder() + "/ring.exr");
+  Image shifted = reference;
+  constexpr int kShift = 4;
+  for (int y = 0; y < reference.Height(); ++y)
+    for (int x = 0; x < reference.Width(); ++x)
+      for (int c = 0; c < reference.Channels(); ++c)
+        shifted.At(x, y, c) = reference.At(std::min(x + kShift, reference.Width() - 1), y, c);
+  EXPECT_GT(CompareBlocks(images, Exact(shifted), 32, kBlockTolerance).failed, 3);
+}
+
+class Slope : public Reference {};
+
+// The slope of the mean log MSE over five seeds against log passes, by least squares.
+TEST_P(Slope, OfErrorAgainstPasses) {
+  const Case& c = GetParam();
+  const auto scene = Load(c.scene + ".pbrt");
+  const Image reference = ReadImage(ReferenceFolder() + "/" + c.reference + ".exr");
+  const std::vector<int> stops = {4, 8, 16, 32, 64};
+  std::vector<double> logError(stops.size());
+  constexpr int kSeeds = 5;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const auto integrator = MakeIntegrator(c.integrator, OptionsOf(*scene));
+    integrator->Prepare(*scene, seed);
+    Film film(scene->Settings().resolution, scene->Settings().crop, scene->Settings().filter);
+    for (size_t stop = 0; stop < stops.size(); ++stop) {
+      while (film.PassCount() < stops[stop]) integrator->RenderPass(static_cast<int>(film.PassCount()), film);
+      logError[stop] += std::log(CompareImages(film.ToImage(), reference).mse) / kSeeds;
+    }
+  }
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const double n = static_cast<double>(stops.size());
+  for (size_t i = 0; i < stops.size(); ++i) {
+    const double x = std::log(stops[i]);
+    sx += x;
+    sy += logError[i];
+    sxx += x * x;
+    sxy += x * logError[i];
+  }
+  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  std::cout << fmt::format("slope {:.3f}\n", slope);
+  EXPECT_LE(slope, c.integrator == "sppm" ? -0.6 : -0.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(V3, Slope,
+                         ::testing::Values(Case{"cbox-v3", "cbox", "path", 64}, Case{"ring-v3", "ring", "path", 64},
+                                           Case{"envglass-v3", "envglass", "path", 64},
+                                           Case{"veach-v3", "veach", "path", 64}, Case{"cbox-v3", "cbox", "sppm", 64},
+                                           Case{"ring-v3", "ring", "sppm", 64}, Case{"lens-v3", "lens", "sppm", 64},
+                                           Case{"envglass-v3", "envglass", "sppm", 64}),
+                         NameOf);
+
+}  // namespace
+}  // namespace dapple

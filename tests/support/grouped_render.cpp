@@ -1,0 +1,113 @@
+#include "tests/support/grouped_render.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace dapple::testing_support {
+
+Image GroupedImages::Mean() const {
+  Image mean = groups.front();
+  for (int y = 0; y < mean.Height(); ++y)
+    for (int x = 0; x < mean.Width(); ++x)
+      for (int c = 0; c < mean.Channels(); ++c) {
+        double sum = 0;
+        for (const Image& group : groups) sum += group.At(x, y, c);
+        mean.At(x, y, c) = static_cast<float>(sum / static_cast<double>(groups.size()));
+      }
+  return mean;
+}
+
+GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
+                           int passes, int groups, uint64_t seed) {
+  const RenderSettings& settings = scene.Settings();
+  GroupedImages result;
+  for (int group = 0; group < groups; ++group) {
+    const auto algorithm = MakeIntegrator(integrator, options);
+    algorithm->Prepare(scene, seed * 1000 + static_cast<uint64_t>(group));
+    Film film(settings.resolution, settings.crop, settings.filter);
+    for (int pair = group; 2 * pair < passes; pair += groups)
+      for (int pass : {2 * pair, 2 * pair + 1}) algorithm->RenderPass(pass, film);
+    result.groups.push_back(film.ToImage());
+  }
+  return result;
+}
+
+GroupedImages Combine(const GroupedImages& a, double c0, const GroupedImages& b, double c1) {
+  GroupedImages result = a;
+  for (size_t g = 0; g < result.groups.size(); ++g) {
+    Image& image = result.groups[g];
+    for (int y = 0; y < image.Height(); ++y)
+      for (int x = 0; x < image.Width(); ++x)
+        for (int c = 0; c < image.Channels(); ++c)
+          image.At(x, y, c) = static_cast<float>(c0 * image.At(x, y, c) + c1 * b.groups[g].At(x, y, c));
+  }
+  return result;
+}
+
+namespace {
+
+struct BlockStatistics {
+  Image mean;                    // of all groups
+  std::vector<double> variance;  // of that mean, one a block and channel
+};
+
+BlockStatistics Statistics(const GroupedImages& images, int blockSize) {
+  std::vector<Image> blocks;
+  for (const Image& group : images.groups) blocks.push_back(BlockMeans(group, blockSize));
+  BlockStatistics statistics{GroupedImages{blocks}.Mean(), {}};
+  const double n = static_cast<double>(blocks.size());
+  for (int y = 0; y < statistics.mean.Height(); ++y)
+    for (int x = 0; x < statistics.mean.Width(); ++x)
+      for (int c = 0; c < Color::kComponents; ++c) {
+        double sum = 0;
+        for (const Image& block : blocks) sum += std::pow(block.At(x, y, c) - statistics.mean.At(x, y, c), 2);
+        statistics.variance.push_back(n > 1 ? sum / (n - 1) / n : 0);
+      }
+  return statistics;
+}
+
+bool AnySkipped(const std::vector<bool>& skip, int width, int height, int blockX, int blockY, int blockSize) {
+  if (skip.empty()) return false;
+  for (int y = blockY * blockSize; y < std::min(height, (blockY + 1) * blockSize); ++y)
+    for (int x = blockX * blockSize; x < std::min(width, (blockX + 1) * blockSize); ++x)
+      if (skip[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)]) return true;
+  return false;
+}
+
+}  // namespace
+
+BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
+                          const std::vector<bool>& skip) {
+  BlockReport report;
+  report.meanRatio = CompareImages(test.Mean(), reference.Mean()).meanRatio;
+  const BlockStatistics t = Statistics(test, blockSize), r = Statistics(reference, blockSize);
+  const int width = test.groups.front().Width(), height = test.groups.front().Height();
+  size_t entry = 0;
+  for (int y = 0; y < t.mean.Height(); ++y)
+    for (int x = 0; x < t.mean.Width(); ++x) {
+      const bool skipped = AnySkipped(skip, width, height, x, y, blockSize);
+      bool blockFailed = false;
+      for (int c = 0; c < Color::kComponents; ++c, ++entry) {
+        if (skipped) continue;
+        const double expected = r.mean.At(x, y, c), got = t.mean.At(x, y, c);
+        const double sigma = std::sqrt(t.variance[entry] + r.variance[entry]);
+        const double excess = std::abs(got - expected) - tolerance * expected - 3 * sigma;
+        blockFailed |= excess > 0;
+        const double relative = excess / (expected + 1e-6);
+        if (relative <= report.worstExcess) continue;
+        report.worstExcess = relative;
+        report.worstBlock = {x, y};
+        report.text = fmt::format("block ({}, {}) channel {}: {:.6g}, expected {:.6g} ({:+.2f} %), sigma {:.2f} %", x,
+                                  y, c, got, expected, 100 * (got / expected - 1), 100 * sigma / expected);
+      }
+      if (skipped) continue;
+      ++report.blocks;
+      report.failed += blockFailed;
+    }
+  report.text = fmt::format("mean ratio {:.5f}, {} of {} blocks fail; worst {}", report.meanRatio, report.failed,
+                            report.blocks, report.text);
+  return report;
+}
+
+}  // namespace dapple::testing_support

@@ -1,0 +1,48 @@
+// Renders with an error bar: the passes of a render dealt out over independent groups, and block means compared with a
+// reference within a stated tolerance plus the noise that the groups themselves show.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "src/image/metrics.h"
+#include "src/scene/scene.h"
+
+namespace dapple::testing_support {
+
+/// Images of the same scene that are independent of each other.
+struct GroupedImages {
+  std::vector<Image> groups;
+
+  /// The mean of all groups.
+  Image Mean() const;
+};
+
+/// Renders passes 0 to `passes` - 1, pair by pair in turn into `groups` films of seeds of their own. The radius
+/// schedule of progressive algorithms runs on over all groups, so each sees the same bias.
+GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
+                           int passes, int groups, uint64_t seed = 1);
+
+/// c0 a + c1 b, group by group.
+GroupedImages Combine(const GroupedImages& a, double c0, const GroupedImages& b, double c1);
+
+/// How block means differ from a reference.
+struct BlockReport {
+  double meanRatio = 1;        ///< of the whole images
+  double worstExcess = -1;     ///< largest (|t - r| - tolerance r - 3 sigma) / (r + floor) over blocks and channels
+  int blocks = 0, failed = 0;  ///< how many were compared; how many of them have a positive excess in any channel
+  Vec2i worstBlock;
+  std::string text;  ///< the worst block in words
+};
+
+/// Compares the means of blocks of blockSize^2 pixels. Sigma is the standard error of the block's mean over the groups
+/// of both sides. `skip`, where not empty, is one flag a pixel: blocks with any flagged pixel are left out.
+BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
+                          const std::vector<bool>& skip = {});
+
+/// A reference image without an error bar of its own.
+inline GroupedImages Exact(Image image) { return {{std::move(image)}}; }
+
+}  // namespace dapple::testing_support
