@@ -50,16 +50,17 @@ PassStats LightTracingIntegrator::RenderLightPaths(int pass, Film& film) const {
   ParallelForChunks(paths, kChunk, [&](int64_t begin, int64_t end) {
     PassStats stats;
     for (int64_t path = begin; path < end; ++path) {
-      const Sampler sampler = Sampler::ForLightPath(seed_, path, pass, paths);
-      const int segments = TraceLightPath(*scene_, *emission_, sampler, maxDepth_, [&](const LightVertex& vertex) {
+      Sampler sampler = Sampler::ForLightPath(seed_, path, pass, paths);
+      const std::optional<EmissionSample> emitted = EmitPhoton(*emission_, sampler);
+      if (!emitted) continue;
+      ++stats.photonsEmitted;
+      stats.photonRays += TraceLightPath(*scene_, *emitted, sampler, maxDepth_, [&](const LightVertex& vertex) {
         // The lens is a decision of its own, apart from the walk's.
         constexpr int kLensBlock = 1 << 16;
         Sampler lens = sampler;
         lens.StartBlock(kLensBlock + vertex.scattered);
         Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths), pass, film, stats);
       });
-      stats.photonRays += segments;
-      stats.photonsEmitted += segments > 0;
     }
     chunkStats[static_cast<size_t>(begin / kChunk)] = stats;
   });

@@ -4,6 +4,7 @@
 
 #include "integrators/pixel_loop.h"
 #include "src/base/parallel.h"
+#include "src/photons/emission_pilot.h"
 #include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
 
@@ -25,7 +26,7 @@ bool IsGlossy(const Bsdf& bsdf) {
 void SppmIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
-  emission_.emplace(scene);
+  emission_.emplace(scene, LearnEmissionGuide(scene, options_.maxDepth, seed));
 }
 
 PassStats SppmIntegrator::RenderPass(int pass, Film& film) const {
@@ -54,16 +55,18 @@ SppmIntegrator::Map SppmIntegrator::TracePhotons(int pass, int64_t paths, PassSt
   ParallelForChunks(paths, kChunk, [&](int64_t begin, int64_t end) {
     Chunk& chunk = chunks[static_cast<size_t>(begin / kChunk)];
     for (int64_t path = begin; path < end; ++path) {
-      const Sampler sampler = Sampler::ForLightPath(seed_, path, pass, paths);
-      const int segments = TraceLightPath(*scene_, *emission_, sampler, options_.maxDepth, [&](const LightVertex& v) {
+      Sampler sampler = Sampler::ForLightPath(seed_, path, pass, paths);
+      const std::optional<EmissionSample> emitted = EmitPhoton(*emission_, sampler);
+      if (!emitted) continue;
+      ++chunk.stats.photonsEmitted;
+      const auto store = [&](const LightVertex& v) {
         // Light straight from its source is sampled where it is needed.
         if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
         chunk.positions.push_back(v.hit.p);
         chunk.photons.push_back({v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng),
                                  static_cast<uint16_t>(v.scattered), v.isCaustic});
-      });
-      chunk.stats.photonRays += segments;
-      chunk.stats.photonsEmitted += segments > 0;
+      };
+      chunk.stats.photonRays += TraceLightPath(*scene_, *emitted, sampler, options_.maxDepth, store);
     }
   });
 

@@ -63,6 +63,7 @@ AreaLight::AreaLight(const Shape* shape, ColorTexturePtr radiance, bool twoSided
   if (count > 1) byArea_ = byArea;
   meanRadiance_ = MeanRadiance();
   plane_ = FindPlane();
+  if (!twoSided_ && radiance_->IsConstant() && !alpha_) ball_ = shape_->AsBall();
 }
 
 Color AreaLight::RadianceAt(const TextureContext& at) const {
@@ -155,8 +156,30 @@ LiRandom AreaLight::Invert_Li(const LightContext& at, const Vec3&, const Surface
   return u;
 }
 
+std::optional<LeSample> AreaLight::SampleBall(const LeRandom& u) const {
+  const Vec3d d = SampleSphere(u.direction);
+  Vec3d s, t;
+  CoordinateSystem(d, &s, &t);
+  const Vec3d local = SampleCosineHemisphere(u.position);
+  const Vec3d n = s * local.x + t * local.y + d * local.z;
+  // The shape's own point knows its rounding.
+  const ShapeSample point = shape_->SampleArea(0, shape_->InvertArea(0, ToFloat(ball_->center + n * ball_->radius)));
+  LeSample sample;
+  sample.Le = meanRadiance_;
+  sample.n = point.n;
+  const Vec3 w = ToFloat(d);
+  const float cosTheta = Dot(point.n, w);
+  sample.pdfPos = 1 / area_;
+  sample.pdfDir = DirectionPdf(cosTheta);
+  if (sample.Le.IsBlack() || sample.pdfDir == 0) return std::nullopt;
+  sample.ray = Ray{OffsetOrigin(point.p, point.pError, point.n, w), w};
+  sample.cosTheta = cosTheta;
+  return sample;
+}
+
 std::optional<LeSample> AreaLight::Sample_Le(const LeRandom& u) const {
   if (area_ == 0) return std::nullopt;
+  if (ball_) return SampleBall(u);
   const Primitive primitive = ChoosePrimitive(u.part);
   const ShapeSample point = shape_->SampleArea(primitive.index, u.position);
   if (!(point.pdf > 0)) return std::nullopt;
@@ -199,6 +222,14 @@ LeRandom AreaLight::Invert_Le(const Ray& ray, const Vec3& n) const {
   const int primitive = PrimitiveAt(ray.o);
   LeRandom u;
   u.part = InvertPrimitive(primitive);
+  if (ball_) {
+    const Vec3d d = ToDouble(ray.d), normal = ToDouble(n);
+    Vec3d s, t;
+    CoordinateSystem(d, &s, &t);
+    u.direction = InvertSphere(d);
+    u.position = InvertCosineHemisphere(Vec3d(Dot(normal, s), Dot(normal, t), Dot(normal, d)));
+    return u;
+  }
   u.position = shape_->InvertArea(primitive, ray.o);
   const Vec3 local = Frame::FromZ(n).ToLocal(ray.d);
   u.direction = InvertCosineHemisphere(ToDouble(local));

@@ -1,7 +1,9 @@
 // An area light: a shape that glows with the same radiance in all directions of its outside, or of both sides.
 //
-// pbrt: `AreaLightSource "diffuse"`. Rays leave from points uniform in the area, with directions by the cosine. Toward
-// a point, a primitive of the shape is chosen by area, then a direction in the solid angle that it covers.
+// pbrt: `AreaLightSource "diffuse"`. Rays leave from points uniform in the area, with directions by the cosine; of a
+// ball the direction is drawn first, uniform over the sphere, and then the point by its cosine: the same density, but
+// near random numbers send light the same way. Toward a point, a primitive of the shape is chosen by area, then a
+// direction in the solid angle that it covers.
 #pragma once
 
 #include "lights/light.h"
@@ -61,6 +63,7 @@ class AreaLight final : public Light {
     return byArea_.Size() > 0 ? byArea_.InvertDiscrete(primitive, 0.5) : 0.5;
   }
   int PrimitiveAt(const Vec3& p) const;
+  std::optional<LeSample> SampleBall(const LeRandom& u) const;
   /// The density per solid angle of an emitted ray whose angle with the outside normal has this cosine.
   double DirectionPdf(float cosTheta) const;
 
@@ -74,6 +77,7 @@ class AreaLight final : public Light {
   Color meanRadiance_;
   Bounds3 bounds_;
   std::optional<Plane> plane_;
+  std::optional<Ball> ball_;  // of one side only, without texture
 };
 
 }  // namespace dapple

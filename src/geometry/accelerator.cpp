@@ -84,7 +84,7 @@ constexpr float kNearest = std::numeric_limits<float>::min();
 /// What callbacks learn of the ray beside Embree's own fields.
 struct Context {
   explicit Context(const Ray& r) : ray(&r) { rtcInitIntersectContext(&embree); }
-  RTCIntersectContext embree;  // first, so that a pointer to it is a pointer to this
+  RTCIntersectContext embree{};  // first, so that a pointer to it is a pointer to this
   const Ray* ray;
 };
 
@@ -342,7 +342,7 @@ SurfaceInteraction Accelerator::State::Interact(const Ray& ray, const RTCRayHit&
 
 std::optional<SurfaceInteraction> Accelerator::Intersect(const Ray& ray) const {
   Context context(ray);
-  RTCRayHit found;
+  RTCRayHit found{};
   found.ray = {ray.o.x, ray.o.y, ray.o.z, kNearest, ray.d.x, ray.d.y, ray.d.z, 0, ray.tMax, ~0u, 0, 0};
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -360,7 +360,7 @@ bool Accelerator::Occluded(const Ray& ray) const {
 
 Bounds3 Accelerator::Bounds() const {
   if (state_->topShapes.empty() && state_->topInstances.empty()) return {};
-  RTCBounds bounds;
+  RTCBounds bounds{};
   rtcGetSceneBounds(state_->scene.get(), &bounds);
   if (!(bounds.lower_x <= bounds.upper_x)) return {};
   return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};

@@ -10,7 +10,7 @@
 
 namespace dapple {
 
-class BilinearMesh : public Shape {
+class BilinearMesh final : public Shape {
  public:
   /// `normals` and `uvs` are empty or as many as `positions`; each four `indices` make a patch: p00, p10, p01, p11.
   /// `reverseOrientation` also turns `normals` around. Throws `Error` where counts do not fit or an index is out of

@@ -5,7 +5,7 @@
 
 namespace dapple {
 
-class Cylinder : public Quadric {
+class Cylinder final : public Quadric {
  public:
   /// `radius` > 0; `zMin` and `zMax` in any order; `phiMaxDegrees` clamped to [0, 360]. Throws `Error` where the radius
   /// is not positive, or the transform is singular.

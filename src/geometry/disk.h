@@ -5,7 +5,7 @@
 
 namespace dapple {
 
-class Disk : public Quadric {
+class Disk final : public Quadric {
  public:
   /// 0 <= `innerRadius` < `radius`; `phiMaxDegrees` clamped to [0, 360]. Throws `Error` where the radii do not fit, or
   /// the transform is singular.

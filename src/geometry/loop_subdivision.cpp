@@ -230,6 +230,7 @@ Mesh MakeMesh(size_t vertexCount, const std::vector<int>& indices) {
 SubdividedMesh LoopSubdivide(int levels, const std::vector<Vec3>& positions, const std::vector<int>& indices) {
   if (levels < 0) throw Error(fmt::format("loop subdivision: {} levels: expected none or more", levels));
   std::vector<Vec3d> points;
+  points.reserve(positions.size());
   for (const Vec3& p : positions) points.push_back(ToDouble(p));
   Mesh mesh = MakeMesh(positions.size(), indices);
   for (int level = 0; level < levels; ++level) {
@@ -245,6 +246,8 @@ SubdividedMesh LoopSubdivide(int levels, const std::vector<Vec3>& positions, con
   for (int vertex = 0; vertex < mesh.VertexCount(); ++vertex)
     limit[vertex] = LimitPosition(mesh, points, vertex, &ring);
   SubdividedMesh result;
+  result.positions.reserve(points.size());
+  result.normals.reserve(points.size());
   for (int vertex = 0; vertex < mesh.VertexCount(); ++vertex) {
     result.positions.push_back(ToFloat(limit[vertex]));
     result.normals.push_back(ToFloat(Normalize(LimitNormal(mesh, limit, vertex, &ring))));

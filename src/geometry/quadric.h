@@ -34,8 +34,8 @@ class Quadric : public Shape {
   };
   struct LocalHits {
     int count = 0;
-    double t[2];
-    Vec3d p[2];
+    double t[2] = {};
+    Vec3d p[2] = {Vec3d(0), Vec3d(0)};
     void Add(double distance, const Vec3d& point) { t[count] = distance, p[count] = point, ++count; }
   };
 
@@ -61,6 +61,7 @@ class Quadric : public Shape {
   virtual double LocalArea() const = 0;
 
   Vec3d ToObject(const Vec3& p) const { return renderToObject_.Point(ToDouble(p)); }
+  Vec3d ToRender(const Vec3d& p) const { return objectToRender_.Point(p); }
   /// Render-space area per object-space area where the object-space unit normal is `n`.
   double AreaStretch(const Vec3d& n) const;
   ShapeSample SampleAt(const Vec3d& p, double pdf) const;

@@ -37,9 +37,18 @@ struct PrimitiveHits {
   PrimitiveHit hits[2];
 };
 
+/// A ball in render space.
+struct Ball {
+  Vec3d center{0, 0, 0};
+  double radius = 0;
+};
+
 class Shape {
  public:
   virtual ~Shape() = default;
+
+  /// The ball whose whole surface this shape is, its normals pointing away from the centre; nothing for other shapes.
+  virtual std::optional<Ball> AsBall() const { return std::nullopt; }
 
   virtual int PrimitiveCount() const = 0;
   virtual Bounds3 PrimitiveBounds(int primitive) const = 0;

@@ -95,6 +95,13 @@ double Sphere::IntegrateArea() const {
 
 double Sphere::LocalArea() const { return phiMax_ * radius_ * (zMax_ - zMin_); }
 
+std::optional<Ball> Sphere::AsBall() const {
+  if (!isWhole_ || !IsSimilarity()) return std::nullopt;
+  const ShapeSample pole = SampleAt(Vec3d(0, 0, radius_), 0), antipole = SampleAt(Vec3d(0, 0, -radius_), 0);
+  if (Dot(pole.n, pole.p - antipole.p) < 0) return std::nullopt;
+  return Ball{ToRender(Vec3d(0)), std::sqrt(area_ / (4 * kPiD))};
+}
+
 Bounds3 Sphere::PrimitiveBounds(int) const {
   // The box of the cut sphere, transformed, within the box of the whole transformed sphere, which is exact.
   Bounds3 bounds = BoundsOf({-radius_, -radius_, zMin_}, {radius_, radius_, zMax_});

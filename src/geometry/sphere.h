@@ -5,7 +5,7 @@
 
 namespace dapple {
 
-class Sphere : public Quadric {
+class Sphere final : public Quadric {
  public:
   /// `radius` > 0; `zMin` and `zMax` in any order, clamped to [-radius, radius]; `phiMaxDegrees` clamped to [0, 360].
   /// Throws `Error` where the radius is not positive, or the transform is singular.
@@ -15,6 +15,7 @@ class Sphere : public Quadric {
   Sphere(const Transform& objectToRender, bool reverseOrientation, double radius)
       : Sphere(objectToRender, reverseOrientation, radius, -radius, radius, 360) {}
 
+  std::optional<Ball> AsBall() const override;
   Bounds3 PrimitiveBounds(int primitive) const override;
   Vec2 Uv(const PrimitiveHit& hit) const override;
   double PrimitiveArea(int primitive) const override { return primitive == 0 ? area_ : 0; }

@@ -18,8 +18,10 @@ inline double AreaToSolidAngle(double pdfArea, const Vec3d& toPoint, const Vec3d
   return std::isfinite(pdf) ? pdf : 0;
 }
 
-/// Bound on how far rounding each coordinate of `p` moves it along the unit vector `n`, where each coordinate has an
-/// error of `coordinateUlps` roundings and, beyond that, a direction of rounded components is followed over `extent`.
+/// Bound on how far, along the unit vector `n`, float may see a surface from where it is, for rays that start at its
+/// point `p`: the rounding of `p` itself, and the rounding of normals, directions and differences of positions, which
+/// counts over the surface's `extent` along each axis. Axes across `n` count little: a plane across an axis has next to
+/// no error.
 inline double RoundingAlong(const Vec3d& n, const Vec3d& p, const Vec3d& extent) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) sum += std::abs(n[axis]) * (1.5 * std::abs(p[axis]) + 3 * extent[axis]);

@@ -13,7 +13,7 @@
 
 namespace dapple {
 
-class TriangleMesh : public Shape {
+class TriangleMesh final : public Shape {
  public:
   /// `normals`, `uvs` and `tangents` are empty or as many as `positions`; normals and tangents need not be of unit
   /// length. Without uvs a triangle's corners are at (0,0), (1,0), (1,1). Each three `indices` make a triangle.
@@ -49,10 +49,10 @@ class TriangleMesh : public Shape {
  private:
   /// One triangle in double: a corner, two edges, and what follows from them.
   struct Corners {
-    std::array<int, 3> index;
+    std::array<int, 3> index{};
     Vec3d p0, e1, e2;
     Vec3d cross;
-    double crossLength;  ///< twice the area; 0 where that is not finite
+    double crossLength = 0;  ///< twice the area; 0 where that is not finite
   };
 
   Corners CornersOf(int primitive) const;

@@ -28,44 +28,49 @@ int GetResolution(const Entity& film, const char* name, int fallback) {
   return value;
 }
 
-/// Pixels whose lower corners lie within shares of the image (pbrt: both ends are rounded up).
-PixelBounds BoundsOfWindow(const Vec2i& resolution, const std::array<double, 4>& window) {
-  const auto pixel = [](double share, int size) {
-    return static_cast<int>(std::ceil(std::clamp(share, 0.0, 1.0) * size));
-  };
-  return {{pixel(std::min(window[0], window[1]), resolution.x), pixel(std::min(window[2], window[3]), resolution.y)},
-          {pixel(std::max(window[0], window[1]), resolution.x), pixel(std::max(window[2], window[3]), resolution.y)}};
+/// The pixel border at a share of the image, rounded up as in pbrt; a share that is a border but for the rounding of
+/// its decimals is that border (0.07 of 100 is 7).
+int PixelOfShare(double share, int size) {
+  const double exact = std::clamp(share, 0.0, 1.0) * size, border = std::round(exact);
+  return static_cast<int>(std::abs(exact - border) < 1e-9 * size ? border : std::ceil(exact));
 }
 
-std::optional<std::array<double, 4>> FilmCropWindow(const BuildContext& context, const Vec2i& ownResolution) {
+PixelBounds BoundsOfWindow(const Vec2i& size, const std::array<double, 4>& window) {
+  return {{PixelOfShare(std::min(window[0], window[1]), size.x), PixelOfShare(std::min(window[2], window[3]), size.y)},
+          {PixelOfShare(std::max(window[0], window[1]), size.x), PixelOfShare(std::max(window[2], window[3]), size.y)}};
+}
+
+/// "pixelbounds": xMin xMax yMin yMax in pixels of the film's own resolution, brought to `resolution`.
+PixelBounds ScaledPixelBounds(const Entity& film, const Vec2i& own, const Vec2i& resolution) {
+  const std::vector<int> values = film.params.GetIntArray("pixelbounds", 4);
+  const auto scaled = [](int value, int from, int to) {
+    const int64_t pixel = std::clamp(value, 0, from);
+    return static_cast<int>((pixel * to + from - 1) / from);
+  };
+  return {{scaled(values[0], own.x, resolution.x), scaled(values[2], own.y, resolution.y)},
+          {scaled(values[1], own.x, resolution.x), scaled(values[3], own.y, resolution.y)}};
+}
+
+void SetCrop(const BuildContext& context, const BuildOptions& options, const Vec2i& own, RenderSettings* settings) {
   const Entity& film = context.description.film;
-  std::optional<std::array<double, 4>> window;
-  if (film.params.Has("cropwindow")) {
-    const std::vector<double> values = film.params.GetFloatArray("cropwindow", 4);
-    window = {values[0], values[1], values[2], values[3]};
-  }
-  if (!film.params.Has("pixelbounds")) return window;
-  if (window)
+  const bool hasWindow = film.params.Has("cropwindow"), hasBounds = film.params.Has("pixelbounds");
+  if (hasWindow && hasBounds)
     context.diagnostics.Warn(film.params.LocationOf("cropwindow", film.location),
                              "\"pixelbounds\" is given too; \"cropwindow\" is ignored");
-  const std::vector<int> values = film.params.GetIntArray("pixelbounds", 4);
-  const double width = ownResolution.x, height = ownResolution.y;
-  return std::array<double, 4>{values[0] / width, values[1] / width, values[2] / height, values[3] / height};
-}
-
-void SetCrop(const BuildContext& context, const BuildOptions& options, const Vec2i& ownResolution,
-             RenderSettings* settings) {
-  const Entity& film = context.description.film;
-  const std::optional<std::array<double, 4>> own = FilmCropWindow(context, ownResolution);
-  const bool isOverridden = options.cropWindow.has_value();
-  const std::optional<std::array<double, 4>> window = isOverridden ? options.cropWindow : own;
   settings->crop = {{0, 0}, settings->resolution};
-  if (!window) return;
-  settings->crop = BoundsOfWindow(settings->resolution, *window);
-  if (!settings->crop.IsEmpty()) return;
-  throw Error(isOverridden ? FileLocation() : film.params.LocationOf("cropwindow", film.location),
-              fmt::format("the crop window {} {} {} {} holds no pixel, expected xMin xMax yMin yMax within 0 and 1",
-                          (*window)[0], (*window)[1], (*window)[2], (*window)[3]));
+  FileLocation place;
+  if (options.cropWindow) {
+    settings->crop = BoundsOfWindow(settings->resolution, *options.cropWindow);
+  } else if (hasBounds) {
+    settings->crop = ScaledPixelBounds(film, own, settings->resolution);
+    place = film.params.LocationOf("pixelbounds", film.location);
+  } else if (hasWindow) {
+    const std::vector<double> window = film.params.GetFloatArray("cropwindow", 4);
+    settings->crop = BoundsOfWindow(settings->resolution, {window[0], window[1], window[2], window[3]});
+    place = film.params.LocationOf("cropwindow", film.location);
+  }
+  if (settings->crop.IsEmpty())
+    throw Error(place, "the crop window holds no pixel, expected xMin xMax yMin yMax within the image");
 }
 
 /// The factor that v4's film applies to every value: shutter time * iso / 100.

@@ -24,6 +24,7 @@ const std::vector<std::string> kShapeTypes = {"trianglemesh", "plymesh", "biline
 const std::vector<std::string> kUnsupportedShapes = {"curve",       "cone",         "paraboloid", "hyperboloid",
                                                      "heightfield", "heightfield2", "nurbs"};
 constexpr int kMaxSubdivisionLevels = 10;
+constexpr float kMaxCoordinate = 1e18f;  // squares of distances stay within float
 
 /// A shape statement with the whole transform to where it goes.
 struct ShapeInput {
@@ -43,17 +44,16 @@ Shapes ListOf(std::unique_ptr<Shape> shape) {
 
 // ---- Meshes
 
-void FailNonFinite(const ShapeInput& in, std::string_view what, size_t index) {
-  throw Error(
-      in.shape.location,
-      fmt::format("{} {} is not finite after its transform, expected one within the range of float", what, index));
+[[noreturn]] void FailTooFar(const ShapeInput& in, const std::string& what) {
+  throw Error(in.shape.location, fmt::format("{} lies beyond {:g} after its transform, expected smaller coordinates",
+                                             what, kMaxCoordinate));
 }
 
 std::vector<Vec3> TransformPoints(const ShapeInput& in, const std::vector<Vec3d>& points) {
   std::vector<Vec3> result(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
     result[i] = ToFloat(in.transform.Point(points[i]));
-    if (!IsFinite(result[i])) FailNonFinite(in, "vertex", i);
+    if (!(MaxAbsComponent(result[i]) < kMaxCoordinate)) FailTooFar(in, fmt::format("vertex {}", i));
   }
   return result;
 }
@@ -242,6 +242,13 @@ Shapes BuildPlyMesh(const ShapeInput& in) {
 
 // ---- Quadrics
 
+Shapes QuadricList(const ShapeInput& in, std::unique_ptr<Shape> shape) {
+  const Bounds3 bounds = shape->PrimitiveBounds(0);
+  const bool isNear = MaxAbsComponent(bounds.min) < kMaxCoordinate && MaxAbsComponent(bounds.max) < kMaxCoordinate;
+  if (!isNear) FailTooFar(in, "the shape");
+  return ListOf(std::move(shape));
+}
+
 double GetRadius(const ShapeInput& in) {
   const double radius = in.Params().GetFloat("radius", 1);
   if (!(radius > 0))
@@ -253,14 +260,16 @@ Shapes BuildSphere(const ShapeInput& in) {
   const double radius = GetRadius(in);
   const double zMin = in.Params().GetFloat("zmin", -radius), zMax = in.Params().GetFloat("zmax", radius);
   const double phiMax = in.Params().GetFloat("phimax", 360);
-  return ListOf(std::make_unique<Sphere>(in.transform, in.shape.reverseOrientation, radius, zMin, zMax, phiMax));
+  return QuadricList(in,
+                     std::make_unique<Sphere>(in.transform, in.shape.reverseOrientation, radius, zMin, zMax, phiMax));
 }
 
 Shapes BuildCylinder(const ShapeInput& in) {
   const double radius = GetRadius(in);
   const double zMin = in.Params().GetFloat("zmin", -1), zMax = in.Params().GetFloat("zmax", 1);
   const double phiMax = in.Params().GetFloat("phimax", 360);
-  return ListOf(std::make_unique<Cylinder>(in.transform, in.shape.reverseOrientation, radius, zMin, zMax, phiMax));
+  return QuadricList(in,
+                     std::make_unique<Cylinder>(in.transform, in.shape.reverseOrientation, radius, zMin, zMax, phiMax));
 }
 
 Shapes BuildDisk(const ShapeInput& in) {
@@ -270,7 +279,8 @@ Shapes BuildDisk(const ShapeInput& in) {
     throw Error(
         in.Place("innerradius"),
         fmt::format("parameter \"innerradius\" is {}, expected at least 0 and less than the radius {}", inner, radius));
-  return ListOf(std::make_unique<Disk>(in.transform, in.shape.reverseOrientation, height, radius, inner, phiMax));
+  return QuadricList(in,
+                     std::make_unique<Disk>(in.transform, in.shape.reverseOrientation, height, radius, inner, phiMax));
 }
 
 Shapes BuildKnown(const ShapeInput& in) {

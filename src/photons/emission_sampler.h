@@ -6,6 +6,7 @@
 
 #include "lights/light.h"
 #include "lights/light_picker.h"
+#include "src/photons/emission_guide.h"
 #include "src/scene/scene.h"
 
 namespace dapple {
@@ -14,7 +15,9 @@ namespace dapple {
 struct EmissionSample {
   int light = -1;       ///< index in the scene
   double pdfLight = 0;  ///< discrete probability of this light
-  LeSample le;
+  LeSample le;          ///< its densities are those of this sampler, guide included
+  LeRandom own;         ///< the light's own random numbers, before any bend of a guide
+  double bend = 1;      ///< density of `own` in its unit square and square, 1 without a guide
 
   /// The flux that one emitted photon stands for: the mean over photons is the scene's emitted power.
   Color Flux() const { return le.Flux() * static_cast<float>(1 / pdfLight); }
@@ -28,10 +31,12 @@ struct EmissionPdf {
 
 class EmissionSampler {
  public:
-  /// The scene must outlive the sampler.
+  /// The scene must outlive the sampler. Lights are chosen by power, and rays by the lights themselves.
   explicit EmissionSampler(const Scene& scene) : scene_(&scene) {}
+  /// The same, bent by what `guide` learned.
+  EmissionSampler(const Scene& scene, EmissionGuide guide) : scene_(&scene), guide_(std::move(guide)) {}
 
-  /// `u.part` chooses the light (by power), and what is left of it the part of the light. Nothing where no light emits.
+  /// `u.part` chooses the light, and what is left of it the part of the light. Nothing where no light emits.
   std::optional<EmissionSample> Sample(const LeRandom& u) const;
   /// The densities with which `Sample` gives this ray of this light; `n` as for Light::Pdf_Le.
   EmissionPdf Pdf(int light, const Ray& ray, const Vec3& n) const;
@@ -40,6 +45,7 @@ class EmissionSampler {
 
  private:
   const Scene* scene_;
+  EmissionGuide guide_;
 };
 
 }  // namespace dapple

@@ -15,22 +15,23 @@ struct LightVertex {
   bool isCaustic;  ///< there were some, and all of them were specular
 };
 
-/// Walks one light path and calls `visit(const LightVertex&)` at each surface it meets, black ones excepted. A vertex
-/// is visited only if one more scattering event there keeps the path within `maxDepth` of them. Russian roulette keeps
-/// a path with the share of its flux that a scattering leaves, so that the power of photons stays even (Jensen 2001,
-/// section 5.2). Returns the number of segments traced; 0 where nothing was emitted.
-template <typename Visitor>
-int TraceLightPath(const Scene& scene, const EmissionSampler& emission, Sampler sampler, int maxDepth,
-                   Visitor&& visit) {
+/// The ray with which a light path begins. Uses block 0 of the sampler.
+inline std::optional<EmissionSample> EmitPhoton(const EmissionSampler& emission, Sampler& sampler) {
   LeRandom u;
   u.direction = sampler.Get2D();
   u.position = sampler.Get2D();
   u.part = sampler.Get1D();
-  const std::optional<EmissionSample> emitted = emission.Sample(u);
-  if (!emitted) return 0;
+  return emission.Sample(u);
+}
 
-  Ray ray = emitted->le.ray;
-  Color flux = emitted->Flux();
+/// Walks on from an emitted photon and calls `visit(const LightVertex&)` at each surface it meets, black ones excepted.
+/// A vertex is visited only if one more scattering event there keeps the path within `maxDepth` of them. Russian
+/// roulette keeps a path with the share of its flux that a scattering leaves, so that the power of photons stays even
+/// (Jensen 2001, section 5.2). Vertex n uses block n + 1 of the sampler. Returns the number of segments traced.
+template <typename Visitor>
+int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth, Visitor&& visit) {
+  Ray ray = emitted.le.ray;
+  Color flux = emitted.Flux();
   int segments = 0;
   bool allSpecular = true;
   for (int scattered = 0; scattered < maxDepth && !flux.IsBlack();) {

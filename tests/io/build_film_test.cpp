@@ -49,6 +49,14 @@ TEST(BuildFilm, CropWindowsAreSharesOfTheImageRoundedUp) {
   const std::string film = R"(Film "rgb" "integer xresolution" 100 "integer yresolution" 50 )";
   EXPECT_EQ(SettingsOf(film + R"("float cropwindow" [0.251 0.5 0 0.1])", 4).crop, (PixelBounds{{26, 0}, {50, 5}}));
   EXPECT_EQ(SettingsOf(film + R"("integer pixelbounds" [10 20 30 40])", 4).crop, (PixelBounds{{10, 30}, {20, 40}}));
+  for (int i = 0; i < 100; ++i) {
+    const std::string bounds = std::to_string(i) + " " + std::to_string(i + 1);
+    EXPECT_EQ(SettingsOf(film + "\"integer pixelbounds\" [" + bounds + " 0 1]", 4).crop,
+              (PixelBounds{{i, 0}, {i + 1, 1}}));
+    const std::string shares = std::to_string(i / 100.) + " " + std::to_string((i + 1) / 100.);
+    EXPECT_EQ(SettingsOf(film + "\"float cropwindow\" [" + shares + " 0 1]", 4).crop,
+              (PixelBounds{{i, 0}, {i + 1, 50}}));
+  }
   BuildOptions half;
   half.cropWindow = {0, 0.5, 0.5, 1};
   EXPECT_EQ(SettingsOf(film + R"("float cropwindow" [0.25 0.5 0 0.1])", 4, half).crop,

@@ -61,6 +61,20 @@ TEST(BuildLights, SpectraOfVersion4AreOfLuminanceOne) {
   EXPECT_GT(Arriving(warm).L.r, 1.5f * Arriving(warm).L.b);
 }
 
+TEST(BuildLights, ColorSpacesOfVersion4) {
+  const auto shines = [](const std::string& space, const std::string& rgb) {
+    return Arriving(Lit("ColorSpace \"" + space + "\" LightSource \"point\" \"point3 from\" [0 0 -1] \"rgb I\" [" +
+                            rgb + "]",
+                        4))
+        .L;
+  };
+  ExpectColor(shines("rec2020", "2 2 2"), Color(2), 1e-3);  // both whites are D65
+  const Color green = shines("rec2020", "0 1 0");           // greener than any sRGB green
+  EXPECT_EQ(green.r, 0);
+  EXPECT_GT(green.g, 1);
+  EXPECT_EQ(shines("srgb", "0 1 0"), Color(0, 1, 0));
+}
+
 TEST(BuildLights, SpotLightsPointTheirWay) {
   const std::string spot = R"(LightSource "spot" "POINT from" [0 0 -2] "POINT to" [0 0 5] "rgb I" [4 4 4]
       "float coneangle" [30] "float conedeltaangle" [10])";

@@ -28,7 +28,7 @@ std::unique_ptr<Scene> Load(const std::string& file) {
 
 IntegratorOptions OptionsOf(const Scene& scene) {
   IntegratorOptions options;
-  options.maxDepth = 32;
+  options.maxDepth = scene.Settings().maxDepth.value_or(options.maxDepth);
   options.photonsPerPass = scene.Settings().photonsPerIteration;
   return options;
 }

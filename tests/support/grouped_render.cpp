@@ -1,5 +1,6 @@
 #include "tests/support/grouped_render.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -80,6 +81,7 @@ bool AnySkipped(const std::vector<bool>& skip, int width, int height, int blockX
 BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
                           const std::vector<bool>& skip) {
   BlockReport report;
+  std::string failures;
   report.meanRatio = CompareImages(test.Mean(), reference.Mean()).meanRatio;
   const BlockStatistics t = Statistics(test, blockSize), r = Statistics(reference, blockSize);
   const int width = test.groups.front().Width(), height = test.groups.front().Height();
@@ -94,6 +96,10 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
         const double sigma = std::sqrt(t.variance[entry] + r.variance[entry]);
         const double excess = std::abs(got - expected) - tolerance * expected - 3 * sigma;
         blockFailed |= excess > 0;
+        constexpr int kListed = 12;
+        if (excess > 0 && std::count(failures.begin(), failures.end(), '\n') < kListed)
+          failures += fmt::format("\n  block ({}, {}) channel {}: {:.6g}, expected {:.6g} ({:+.2f} %), sigma {:.2f} %",
+                                  x, y, c, got, expected, 100 * (got / expected - 1), 100 * sigma / expected);
         const double relative = excess / (expected + 1e-6);
         if (relative <= report.worstExcess) continue;
         report.worstExcess = relative;
@@ -105,8 +111,8 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
       ++report.blocks;
       report.failed += blockFailed;
     }
-  report.text = fmt::format("mean ratio {:.5f}, {} of {} blocks fail; worst {}", report.meanRatio, report.failed,
-                            report.blocks, report.text);
+  report.text = fmt::format("mean ratio {:.5f}, {} of {} blocks fail; worst {}{}", report.meanRatio, report.failed,
+                            report.blocks, report.text, failures);
   return report;
 }
 

@@ -1,0 +1,117 @@
+#include "src/photons/emission_guide.h"
+
+#include <cmath>
+
+#include "src/base/numerics.h"
+
+namespace dapple {
+
+namespace {
+
+constexpr int kCells = 64;  // a side
+constexpr double kEvenShare = 0.1;
+
+/// The table of least variance: where a share q of the photons is of use, density goes with sqrt(q).
+class Histogram {
+ public:
+  void Add(const Vec2d& u, double weight) {
+    if (sums_.empty()) sums_.assign(kCells * kCells, 0);
+    const auto cell = [](double x) { return std::clamp(static_cast<int>(x * kCells), 0, kCells - 1); };
+    sums_[static_cast<size_t>(cell(u.y) * kCells + cell(u.x))] += weight;
+  }
+
+  Distribution2D ToTable() const {
+    if (sums_.empty()) return {};
+    std::vector<double> weights = Smoothed();
+    double sum = 0;
+    for (double& weight : weights) sum += weight = std::sqrt(weight);
+    if (!(sum > 0)) return {};
+    for (double& weight : weights)
+      weight = (1 - kEvenShare) * weight / sum + kEvenShare / static_cast<double>(weights.size());
+    return {std::span<const double>(weights), kCells, kCells};
+  }
+
+ private:
+  /// Neighbours of a useful cell are likely useful too: a 3 x 3 binomial filter, which keeps the sum inside the
+  /// borders.
+  std::vector<double> Smoothed() const {
+    constexpr double kTap[3] = {0.25, 0.5, 0.25};
+    std::vector<double> result(sums_.size());
+    for (int y = 0; y < kCells; ++y)
+      for (int x = 0; x < kCells; ++x)
+        for (int dy = -1; dy <= 1; ++dy)
+          for (int dx = -1; dx <= 1; ++dx) {
+            const int fromX = std::clamp(x + dx, 0, kCells - 1), fromY = std::clamp(y + dy, 0, kCells - 1);
+            result[static_cast<size_t>(y * kCells + x)] +=
+                kTap[dx + 1] * kTap[dy + 1] * sums_[static_cast<size_t>(fromY * kCells + fromX)];
+          }
+    return result;
+  }
+
+  std::vector<double> sums_;
+};
+
+ContinuousSample2D BendBy(const Distribution2D& table, const Vec2d& u) {
+  return table.Height() == 0 ? ContinuousSample2D{u, 1} : table.Sample(u);
+}
+
+}  // namespace
+
+EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot) {
+  struct Learned {
+    Histogram position, direction;
+    double emitted = 0, useful = 0;
+  };
+  std::vector<Learned> learned(power.size());
+  for (const PilotPhoton& photon : pilot) {
+    if (photon.light < 0) continue;
+    Learned& light = learned[static_cast<size_t>(photon.light)];
+    light.emitted += 1;
+    if (photon.weight == 0) continue;
+    light.useful += photon.weight;
+    if (!photon.deltaPos) light.position.Add(photon.position, photon.weight);
+    if (!photon.deltaDir) light.direction.Add(photon.direction, photon.weight);
+  }
+
+  std::vector<double> use(power.size());
+  double totalPower = 0, totalUse = 0;
+  for (size_t i = 0; i < power.size(); ++i) {
+    use[i] = learned[i].emitted > 0 ? power[i] * std::sqrt(learned[i].useful / learned[i].emitted) : 0;
+    totalPower += power[i];
+    totalUse += use[i];
+  }
+  if (!(totalUse > 0) || !std::isfinite(totalPower)) return;
+  for (size_t i = 0; i < power.size(); ++i)
+    use[i] = (1 - kEvenShare) * use[i] / totalUse + kEvenShare * power[i] / totalPower;
+  byUse_ = Distribution1D(std::span<const double>(use));
+  lights_.reserve(power.size());
+  for (const Learned& light : learned) lights_.push_back({light.position.ToTable(), light.direction.ToTable()});
+}
+
+EmissionGuide::Bent EmissionGuide::Bend(int light, const Vec2d& position, const Vec2d& direction) const {
+  const LightTables& tables = lights_[static_cast<size_t>(light)];
+  const ContinuousSample2D p = BendBy(tables.position, position), d = BendBy(tables.direction, direction);
+  return {p.p, d.p, p.pdf, d.pdf};
+}
+
+EmissionGuide::Bent EmissionGuide::Unbend(int light, const Vec2d& position, const Vec2d& direction) const {
+  const LightTables& tables = lights_[static_cast<size_t>(light)];
+  Bent bent{position, direction};
+  if (tables.position.Height() > 0) {
+    bent.position = tables.position.Invert(position);
+    bent.pdfPosition = tables.position.Pdf(position);
+  }
+  if (tables.direction.Height() > 0) {
+    bent.direction = tables.direction.Invert(direction);
+    bent.pdfDirection = tables.direction.Pdf(direction);
+  }
+  return bent;
+}
+
+int64_t EmissionGuide::MemoryBytes() const {
+  int64_t bytes = byUse_.MemoryBytes();
+  for (const LightTables& light : lights_) bytes += light.position.MemoryBytes() + light.direction.MemoryBytes();
+  return bytes;
+}
+
+}  // namespace dapple

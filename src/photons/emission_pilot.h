@@ -1,0 +1,16 @@
+// The pilot that teaches an `EmissionGuide`: which photons land, after some scattering, where the camera looks.
+#pragma once
+
+#include <cstdint>
+
+#include "src/photons/emission_guide.h"
+#include "src/scene/scene.h"
+
+namespace dapple {
+
+/// Follows a few thousand camera paths to the surfaces that gather photons, then rounds of photons, each round guided
+/// by those before it. A photon is of use where it lands near such a point with at least one scattering event behind
+/// it. The result depends on scene, `maxDepth` and seed alone; it bends nothing where no photon came to anything.
+EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed);
+
+}  // namespace dapple
