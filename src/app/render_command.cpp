@@ -15,8 +15,10 @@
 #include "src/app/scene_options.h"
 #include "src/app/signals.h"
 #include "src/base/parallel.h"
+#include "src/image/atomic_file.h"
 #include "src/render/driver.h"
 #include "src/render/output.h"
+#include "src/render/statistics.h"
 
 namespace dapple {
 
@@ -24,6 +26,7 @@ namespace {
 
 struct RenderOptions : SceneOptions {
   std::vector<std::string> outputs;
+  std::string statistics;
   bool isQuiet = false;
   bool recordsSeconds = false;
 };
@@ -104,6 +107,7 @@ RenderResult RenderWithProgress(const Scene& scene, const RenderPlan& plan, cons
 
 int RunRender(RenderOptions options) {
   for (const std::string& output : options.outputs) CheckOutput(output);
+  if (!options.statistics.empty()) CheckFolder(options.statistics);
   const ThreadLimit threads(options.threads);
   Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   const LoadedScene loaded = Load(options, diagnostics);
@@ -126,11 +130,13 @@ int RunRender(RenderOptions options) {
     return 128 + signals.Signal();
   }
   const Image picture = ToPicture(film, scene.Settings());
-  const ImageMetadata metadata = ToMetadata(MakeRecord(options, plan, result));
+  const RenderRecord record = MakeRecord(options, plan, result);
+  const ImageMetadata metadata = ToMetadata(record);
   for (const std::string& output : options.outputs) {
     WriteOutput(output, picture, metadata);
     if (!options.isQuiet) fmt::print("{}\n", output);
   }
+  if (!options.statistics.empty()) WriteFileAtomically(options.statistics, StatisticsToJson(record, result, film));
   WarnOfNonFinite(film);
   if (!options.isQuiet) PrintSummary(result, film);
   return result.stopped ? 128 + signals.Signal() : kExitSuccess;
@@ -148,6 +154,8 @@ void AddRenderCommand(CLI::App& program, Action* action) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   options->AddTo(command);
+  command->add_option("--stats", options->statistics, "Write what the render did (rays, photons, seconds) as JSON")
+      ->type_name("FILE.json");
   command->add_flag("--record-seconds", options->recordsSeconds,
                     "Record in the file how long the render took, with --passes too; else the same seed and passes "
                     "give the same file");

@@ -44,11 +44,14 @@ Image ToPicture(const Film& film, const RenderSettings& settings) {
 }
 
 void CheckOutput(const std::string& path) {
-  namespace fs = std::filesystem;
   FormatOf(path);
+  CheckFolder(path);
+}
+
+void CheckFolder(const std::string& path) {
+  namespace fs = std::filesystem;
   std::error_code ignored;
-  if (fs::is_directory(path, ignored))
-    throw Error(FileLocation(path), "expected the name of an image file; this is a folder");
+  if (fs::is_directory(path, ignored)) throw Error(FileLocation(path), "expected the name of a file; this is a folder");
   const fs::path parent = fs::path(path).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   if (!fs::is_directory(folder, ignored)) {

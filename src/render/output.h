@@ -33,6 +33,10 @@ ImageMetadata ToMetadata(const RenderRecord& record);
 /// The mean of the film's passes, times the exposure of the settings.
 Image ToPicture(const Film& film, const RenderSettings& settings);
 
+/// Throws `Error` where no file can be written to `path`: its folder is missing or not writable, or it is a folder
+/// itself.
+void CheckFolder(const std::string& path);
+
 /// Throws `Error` where an image cannot be written to `path`: the extension is neither .exr nor .png (in any case of
 /// letters), the folder is missing or not writable, or `path` is a folder.
 void CheckOutput(const std::string& path);

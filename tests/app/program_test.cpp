@@ -5,6 +5,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <signal.h>
 
 #include "src/image/image_io.h"
@@ -27,6 +28,18 @@ TEST_F(Program, TellsItsVersion) {
   const ProgramResult result = Run("--version");
   EXPECT_EQ(result.exitCode, 0);
   EXPECT_TRUE(BeginsWith(result.out, "dapple " + Version() + ", " + InstructionSet()));
+}
+
+TEST_F(Program, StatisticsCountWhatWasDone) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(Run("tiny.pbrt --integrator path --passes 3 -o a.exr --stats stats.json --quiet").exitCode, 0);
+  const auto json = nlohmann::json::parse(Read("stats.json"));
+  EXPECT_EQ(json["integrator"], "path");
+  EXPECT_EQ(json["passes"], 3);
+  EXPECT_GT(json["rays"]["camera"], 0);
+  EXPECT_EQ(json["rays"]["photon"], 0);
+  EXPECT_EQ(json["photons"]["emitted"], 0);
+  EXPECT_EQ(Run("tiny.pbrt --passes 1 -o a.exr --stats missing/stats.json").exitCode, 1);
 }
 
 TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
