@@ -13,7 +13,8 @@ PixelSample SamplePixel(const Scene& scene, const Film& film, const Vec2i& pixel
 }
 
 LightContext ContextOf(const SurfaceInteraction& hit, const Bsdf& bsdf) {
-  return {hit.p, FaceForward(bsdf.ShadingFrame().n, hit.wo), bsdf.Flags().HasTransmission()};
+  // The geometric normal: it is what decides, in the BSDF too, from which side light counts.
+  return {hit.p, FaceForward(bsdf.GeometricNormal(), hit.wo), bsdf.Flags().HasTransmission()};
 }
 
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last) {

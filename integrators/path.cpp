@@ -28,12 +28,13 @@ Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) cons
     ++stats.cameraRays;
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
     radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last);
-    if (!hit || scattered >= maxDepth_) return radiance;
+    if (!hit) return radiance;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
       ray = SpawnRay(*hit, ray.d);
       continue;
     }
+    if (scattered >= maxDepth_) return radiance;
     const Bsdf bsdf = material->GetBsdf(*hit);
     if (bsdf.IsBlack()) return radiance;
 

@@ -34,11 +34,11 @@ PassStats SppmIntegrator::RenderPass(int pass, Film& film) const {
   const int64_t paths = options_.photonsPerPass ? *options_.photonsPerPass : int64_t{resolution.x} * resolution.y;
   PassStats stats;
   const Map map = TracePhotons(pass, paths, &stats);
-  const float photonWeight = 1 / static_cast<float>(paths);
+  const PhotonPass photons{map, 1 / static_cast<float>(paths), RadiusFactor(pass, kAlpha)};
   stats += ForEachPixel(film, [&](const Vec2i& pixel, PassStats& tileStats) {
     Sampler sampler = Sampler::ForPixel(seed_, pixel, pass);
     const PixelSample sample = SamplePixel(*scene_, film, pixel, sampler);
-    film.AddSample(pixel, Radiance(sample.camera, pass, map, photonWeight, sampler, tileStats) * sample.weight, pass);
+    film.AddSample(pixel, Radiance(sample.camera, photons, sampler, tileStats) * sample.weight, pass);
   });
   film.FinishPass(pass);
   return stats;
@@ -63,8 +63,8 @@ SppmIntegrator::Map SppmIntegrator::TracePhotons(int pass, int64_t paths, PassSt
         // Light straight from its source is sampled where it is needed.
         if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
         chunk.positions.push_back(v.hit.p);
-        chunk.photons.push_back({v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng),
-                                 static_cast<uint16_t>(v.scattered), v.isCaustic});
+        chunk.photons.push_back(
+            {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
       };
       chunk.stats.photonRays += TraceLightPath(*scene_, *emitted, sampler, options_.maxDepth, store);
     }
@@ -86,13 +86,12 @@ SppmIntegrator::Map SppmIntegrator::TracePhotons(int pass, int64_t paths, PassSt
   return {std::move(positions), photons};
 }
 
-Color SppmIntegrator::Radiance(const CameraRay& camera, int pass, const Map& map, float photonWeight, Sampler& sampler,
+Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,
                                PassStats& stats) const {
   Ray ray = camera.ray;
   Color radiance, throughput(1);
   LastScattering last;
   float etaScale = 1, distance = 0;
-  const float schedule = RadiusFactor(pass, kAlpha);
   bool isBehindGlossy = false, isDone = false;
   for (int scattered = 0;;) {
     ++stats.cameraRays;
@@ -100,13 +99,14 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, int pass, const Map& map
     // Sources that a glossy surface sees by specular ones reach it as caustic photons.
     if (!isBehindGlossy || !last.isSpecular)
       radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last);
-    if (!hit || scattered >= options_.maxDepth || isDone) return radiance;
+    if (!hit) return radiance;
     distance += hit->t;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
       ray = SpawnRay(*hit, ray.d);
       continue;
     }
+    if (scattered >= options_.maxDepth || isDone) return radiance;
     const Bsdf bsdf = material->GetBsdf(*hit);
     if (bsdf.IsBlack()) return radiance;
 
@@ -119,9 +119,10 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, int pass, const Map& map
     if (!bsdf.IsPurelySpecular()) {
       radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, sampler, stats);
       const double footprint = camera.footprintAtLens + camera.footprintSpread * distance;
-      const double radius = options_.radius.value_or(options_.radiusInPixels * footprint) * schedule;
-      radiance += throughput * photonWeight *
-                  Gather(map, *hit, bsdf, {static_cast<float>(radius), options_.maxDepth - scattered, isGlossy}, stats);
+      const double radius = options_.radius.value_or(options_.radiusInPixels * footprint) * photons.radiusFactor;
+      radiance +=
+          throughput * photons.weight *
+          Gather(photons.map, *hit, bsdf, {static_cast<float>(radius), options_.maxDepth - scattered, isGlossy}, stats);
     }
 
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
@@ -152,7 +153,7 @@ Color SppmIntegrator::Gather(const Map& map, const SurfaceInteraction& hit, cons
     ++stats.photonsGathered;
     if (photon.scattered > limits.maxScattered || (limits.causticsOnly && !photon.isCaustic)) return;
     if (std::abs(Dot(position - hit.p, hit.ng)) > maxPlaneDistance) return;
-    if (Dot(photon.normal.Decode(), hit.ng) < kMinNormalCosine) return;
+    if (AbsDot(photon.normal.Decode(), hit.ng) < kMinNormalCosine) return;
     const Vec3 wi = photon.wi.Decode();
     // Photons are dense by |ng.wi|, and Eval has the shading normal's cosine.
     const float cosine = AbsDot(hit.ng, wi);

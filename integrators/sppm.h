@@ -33,14 +33,19 @@ class SppmIntegrator final : public Integrator {
     Color flux;
     OctahedralVector wi;      ///< to where the light came from
     OctahedralVector normal;  ///< geometric
-    uint16_t scattered = 0;   ///< scattering events before this surface, at least one
+    int scattered = 0;        ///< scattering events before this surface, at least one
     bool isCaustic = false;   ///< all of them were specular
   };
   using Map = PhotonMap<Photon>;
 
   Map TracePhotons(int pass, int64_t paths, PassStats* stats) const;
-  Color Radiance(const CameraRay& camera, int pass, const Map& map, float photonWeight, Sampler& sampler,
-                 PassStats& stats) const;
+  /// What the photons of a pass are gathered with.
+  struct PhotonPass {
+    const Map& map;
+    float weight;        ///< 1 / light paths of the pass
+    float radiusFactor;  ///< on the starting radius
+  };
+  Color Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const;
   /// What a gather takes of the photons within its radius.
   struct GatherLimits {
     float radius;

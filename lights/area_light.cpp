@@ -20,7 +20,7 @@ Vec3 BoxCorner(const Bounds3& box, int i) {
 bool IsBelowHorizon(const Bounds3& box, const LightContext& at) {
   if (!HasHorizon(at)) return false;
   for (int i = 0; i < 8; ++i) {
-    if (!(Dot(BoxCorner(box, i) - at.p, at.ns) < 0)) return false;
+    if (!(Dot(BoxCorner(box, i) - at.p, at.n) < 0)) return false;
   }
   return true;
 }
@@ -63,17 +63,17 @@ AreaLight::AreaLight(const Shape* shape, ColorTexturePtr radiance, bool twoSided
   if (count > 1) byArea_ = byArea;
   meanRadiance_ = MeanRadiance();
   plane_ = FindPlane();
-  if (!twoSided_ && radiance_->IsConstant() && !alpha_) ball_ = shape_->AsBall();
+  if (!twoSided_ && IsEvenlyBright()) ball_ = shape_->AsBall();
 }
 
-Color AreaLight::RadianceAt(const TextureContext& at) const {
-  if (alpha_ && alpha_->Evaluate(at) <= 0) return Color();
-  return radiance_->Evaluate(at);
+Color AreaLight::EmittedAt(const TextureContext& at) const {
+  const float coverage = alpha_ ? Coverage(*alpha_, at) : 1;
+  return coverage > 0 ? radiance_->Evaluate(at) * coverage : Color();
 }
 
 Color AreaLight::MeanRadiance() const {
   if (area_ == 0) return Color();
-  if (radiance_->IsConstant() && !alpha_) return RadianceAt(TextureContext());
+  if (IsEvenlyBright()) return EmittedAt(TextureContext());
   // Points of a rank-one lattice (Roberts's generalised golden ratio) over each stratum of the choice of primitive.
   constexpr int kPoints = 1 << 14;
   Vec3d sum(0);
@@ -83,7 +83,7 @@ Color AreaLight::MeanRadiance() const {
     const ShapeSample point = shape_->SampleArea(primitive.index, Vec2d(x - std::floor(x), y - std::floor(y)));
     const double pdf = primitive.probability * point.pdf;
     if (!(pdf > 0)) continue;
-    const Color L = RadianceAt(ContextOf(point));
+    const Color L = EmittedAt(ContextOf(point));
     sum += Vec3d(L.r, L.g, L.b) / (pdf * area_);
   }
   const Vec3 mean = ToFloat(sum / kPoints);
@@ -135,7 +135,7 @@ std::optional<LiSample> AreaLight::Sample_Li(const LightContext& at, const LiRan
   if (LengthSquared(toLight) == 0) return std::nullopt;
   sample.wi = ToFloat(Normalize(toLight));
   if (!twoSided_ && Dot(point->n, sample.wi) >= 0) return std::nullopt;
-  sample.L = RadianceAt(ContextOf(*point));
+  sample.L = EmittedAt(ContextOf(*point));
   if (sample.L.IsBlack()) return std::nullopt;
   sample.pdf = primitive.probability * point->pdf;
   sample.p = point->p;
@@ -192,7 +192,7 @@ std::optional<LeSample> AreaLight::Sample_Le(const LeRandom& u) const {
   const Vec3 d = Normalize(Frame::FromZ(point.n).ToWorld(ToFloat(local)));
 
   LeSample sample;
-  sample.Le = RadianceAt(ContextOf(point));
+  sample.Le = EmittedAt(ContextOf(point));
   const float cosTheta = Dot(point.n, d);
   sample.pdfPos = isUniform_ ? 1 / area_ : primitive.probability * point.pdf;
   sample.pdfDir = DirectionPdf(cosTheta);
@@ -257,7 +257,7 @@ Color AreaLight::L(const SurfaceInteraction& hit, const Vec3& w) const {
   TextureContext context(hit.uv);
   context.p = hit.p;
   context.n = hit.ng;
-  return RadianceAt(context);
+  return !alpha_ || Coverage(*alpha_, context) > 0 ? radiance_->Evaluate(context) : Color();
 }
 
 }  // namespace dapple

@@ -1,14 +1,18 @@
 // An area light: a shape that glows with the same radiance in all directions of its outside, or of both sides.
 //
 // pbrt: `AreaLightSource "diffuse"`. Rays leave from points uniform in the area, with directions by the cosine; of a
-// ball the direction is drawn first, uniform over the sphere, and then the point by its cosine: the same density, but
-// near random numbers send light the same way. Toward a point, a primitive of the shape is chosen by area, then a
-// direction in the solid angle that it covers.
+// ball the direction is drawn first, uniform over the sphere, and then the point by its cosine: near random numbers
+// send light the same way. Its `pdfPos` and `pdfDir` are told as if the point came first; they are right as a product,
+// which is the same in either order. Toward a point, a primitive of the shape is chosen by area, then a direction in
+// the solid angle that it covers.
+//
+// Where alpha lets rays through, the share of them that meets the surface sees its whole radiance (`L`); what is
+// sampled from the light carries that share of it.
 #pragma once
 
 #include "lights/light.h"
 #include "src/geometry/shape.h"
-#include "src/materials/texture.h"
+#include "src/materials/alpha.h"
 #include "src/sampling/distribution.h"
 
 namespace dapple {
@@ -17,7 +21,8 @@ class AreaLight final : public Light {
  public:
   /// The light of `shape`, which must live as long; radiance on the outside (the side of `ng`), or on both sides.
   AreaLight(const Shape* shape, const Color& radiance, bool twoSided);
-  /// Radiance by surface coordinates. `alpha`: where it is 0 there is a hole that emits nothing; null: no holes.
+  /// Radiance by surface coordinates. `alpha`: the surface is there, and shines, with the probability `Coverage`
+  /// (src/materials/alpha.h), as the scene's rays find it; null: everywhere.
   AreaLight(const Shape* shape, ColorTexturePtr radiance, bool twoSided, FloatTexturePtr alpha = nullptr);
 
   std::string_view Name() const override { return "area"; }
@@ -38,7 +43,6 @@ class AreaLight final : public Light {
 
   Color L(const SurfaceInteraction& hit, const Vec3& w) const override;
 
-  bool IsTwoSided() const { return twoSided_; }
   /// Of one side, all primitives together.
   double Area() const { return area_; }
 
@@ -54,7 +58,9 @@ class AreaLight final : public Light {
     float offset = 0;  ///< Dot(normal, p) of none of its points is less
   };
 
-  Color RadianceAt(const TextureContext& at) const;
+  /// The radiance of a point that is there with its coverage.
+  Color EmittedAt(const TextureContext& at) const;
+  bool IsEvenlyBright() const { return radiance_->IsConstant() && (!alpha_ || alpha_->IsConstant()); }
   Color MeanRadiance() const;
   std::optional<Plane> FindPlane() const;
   Primitive ChoosePrimitive(double u) const;
@@ -63,6 +69,7 @@ class AreaLight final : public Light {
     return byArea_.Size() > 0 ? byArea_.InvertDiscrete(primitive, 0.5) : 0.5;
   }
   int PrimitiveAt(const Vec3& p) const;
+  /// `Sample_Le` of a ball, direction first: 1 / (4 pi) times cos / (pi r^2) is the product 1 / area times cos / pi.
   std::optional<LeSample> SampleBall(const LeRandom& u) const;
   /// The density per solid angle of an emitted ray whose angle with the outside normal has this cosine.
   double DirectionPdf(float cosTheta) const;
@@ -77,7 +84,7 @@ class AreaLight final : public Light {
   Color meanRadiance_;
   Bounds3 bounds_;
   std::optional<Plane> plane_;
-  std::optional<Ball> ball_;  // of one side only, without texture
+  std::optional<Ball> ball_;  // of one side only, evenly bright
 };
 
 }  // namespace dapple

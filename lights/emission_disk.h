@@ -21,6 +21,7 @@ struct EmissionDisk {
   /// The density at which the line through `p` along w meets the disk. A margin of rounding around the rim belongs to
   /// it.
   double Pdf(const Vec3& p) const;
+  /// The random numbers with which `Sample` gives the point where the line through `p` along w meets the disk.
   Vec2d Invert(const Vec3& p) const;
 
  private:

@@ -117,7 +117,7 @@ std::optional<LiSample> UniformEnvironmentLight::Sample_Li(const LightContext& a
   if (L_.IsBlack()) return std::nullopt;
   LiSample sample;
   if (HasHorizon(at)) {
-    sample.wi = Normalize(Frame::FromZ(at.ns).ToWorld(ToFloat(SampleCosineHemisphere(u.direction))));
+    sample.wi = Normalize(Frame::FromZ(at.n).ToWorld(ToFloat(SampleCosineHemisphere(u.direction))));
   } else {
     sample.wi = ToFloat(SampleSphere(u.direction));
   }
@@ -129,13 +129,13 @@ std::optional<LiSample> UniformEnvironmentLight::Sample_Li(const LightContext& a
 }
 
 double UniformEnvironmentLight::Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
-  return HasHorizon(at) ? CosineHemispherePdf(static_cast<double>(Dot(at.ns, wi))) : kSpherePdf;
+  return HasHorizon(at) ? CosineHemispherePdf(static_cast<double>(Dot(at.n, wi))) : kSpherePdf;
 }
 
 LiRandom UniformEnvironmentLight::Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
   LiRandom u;
   u.direction =
-      HasHorizon(at) ? InvertCosineHemisphere(ToDouble(Frame::FromZ(at.ns).ToLocal(wi))) : InvertSphere(ToDouble(wi));
+      HasHorizon(at) ? InvertCosineHemisphere(ToDouble(Frame::FromZ(at.n).ToLocal(wi))) : InvertSphere(ToDouble(wi));
   return u;
 }
 

@@ -14,14 +14,9 @@ class EnvironmentLight final : public Light {
  public:
   using Mapping = EnvironmentMapping;
 
-  /// `image` as `EnvironmentMap` takes it; `RepairEnvironment` makes it so. Of `lightToRender` the nearest rotation (or
-  /// rotation with reflection) counts: radiance does not depend on lengths.
+  /// `image` as `EnvironmentMap` takes it; `EnvironmentMap::Repair` makes it so. Of `lightToRender` the nearest
+  /// rotation (or rotation with reflection) counts: radiance does not depend on lengths.
   EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale, Mapping mapping);
-
-  /// See `EnvironmentMap::Repair`; warn where `*repairedPixels` is not 0.
-  static Image RepairEnvironment(const Image& image, int64_t* repairedPixels) {
-    return EnvironmentMap::Repair(image, repairedPixels);
-  }
 
   std::string_view Name() const override { return "infinite"; }
   bool IsInfinite() const override { return true; }
@@ -39,6 +34,7 @@ class EnvironmentLight final : public Light {
 
   Color Le(const Ray& ray) const override;
 
+  /// The map in its own space.
   const EnvironmentMap& Map() const { return map_; }
 
  private:
@@ -53,6 +49,7 @@ class EnvironmentLight final : public Light {
 /// The same radiance from everywhere. Toward a surface that light does not cross, directions are drawn by the cosine.
 class UniformEnvironmentLight final : public Light {
  public:
+  /// `L`: radiance, W / (m^2 sr).
   explicit UniformEnvironmentLight(const Color& L) : L_(L) {}
 
   std::string_view Name() const override { return "infinite"; }

@@ -2,8 +2,10 @@
 //
 // The lookup is bilinear between texel centres. The square is cut where that lookup changes its formula: at the lines
 // through the texel centres (and at the square's edges). So in each of the (width + 1) x (height + 1) cells the
-// radiance is a bilinear function of its four corners, and directions are drawn from just that function: the density is
-// positive exactly where the radiance is.
+// radiance is a bilinear function of its four corners, and directions are drawn from the bilinear function with the
+// largest components of the same corners. The density is thus positive exactly where the radiance is, and close to it
+// in shape: for an equal-area gray map in proportion to it; for LatLong the radiance is linear in theta within a cell
+// and the density in cos theta, which differ noticeably in the cells at the poles only.
 #pragma once
 
 #include <vector>
@@ -16,8 +18,7 @@ namespace dapple {
 
 enum class EnvironmentMapping {
   /// u = phi / (2 pi), v = theta / pi, for w = (sin theta cos phi, sin theta sin phi, cos theta): pbrt-v3. Rows wrap
-  /// around;
-  /// the first and last row reach up to the poles.
+  /// around; the first and last row reach up to the poles.
   LatLong,
   /// Square image, `EqualAreaSquareToSphere`: pbrt-v4. Across an edge, the lookup goes on where the sphere does.
   EqualArea,
@@ -39,6 +40,7 @@ class EnvironmentMap {
   /// finite value of the image. `*repairedPixels` is the number of pixels that were changed.
   static Image Repair(const Image& image, int64_t* repairedPixels);
 
+  /// No radiance anywhere: nothing can be drawn.
   bool IsBlack() const { return table_.IsZero(); }
   /// `w` of any length but zero.
   Color Radiance(const Vec3d& w) const;
@@ -46,9 +48,11 @@ class EnvironmentMap {
   EnvironmentValue Evaluate(const Vec3d& w) const;
   /// A unit direction; its density is `Evaluate`'s. The map must not be black.
   Vec3d Sample(const Vec2d& u) const;
+  /// The random numbers with which `Sample` gives the direction `w`, of any length but zero. The map must not be black.
   Vec2d Invert(const Vec3d& w) const;
   /// The integral of the radiance over all directions (of the lookup, exactly).
   Color Integral() const { return integral_; }
+  /// Of the tables; the image is not kept.
   int64_t MemoryBytes() const;
 
  private:

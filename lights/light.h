@@ -16,15 +16,16 @@
 
 namespace dapple {
 
-/// Where light is asked for.
+/// Where light is asked for. Light from behind an opaque surface (not transmissive, `n` not zero) does not count: a
+/// light may leave it out of its importance and of what it draws.
 struct LightContext {
   Vec3 p;
-  Vec3 ns{0, 0, 0};  ///< shading normal, turned to the side that is looked from; zero where there is no surface
+  Vec3 n{0, 0, 0};  ///< geometric normal, turned to the side that is looked from; zero where there is no surface
   bool transmissive = false;  ///< light from behind counts too
 
   explicit LightContext(const Vec3& point) : p(point) {}
   LightContext(const Vec3& point, const Vec3& normal, bool isTransmissive)
-      : p(point), ns(normal), transmissive(isTransmissive) {}
+      : p(point), n(normal), transmissive(isTransmissive) {}
 };
 
 /// Light that may arrive at a point.
@@ -53,6 +54,7 @@ struct LeSample {
   Color Flux() const { return Le * static_cast<float>(cosTheta / (pdfPos * pdfDir)); }
 };
 
+/// The densities of an emitted ray.
 struct LePdf {
   double position = 0;   ///< as LeSample::pdfPos
   double direction = 0;  ///< as LeSample::pdfDir
@@ -77,6 +79,7 @@ struct SceneExtent {
   float radius = 1;
 };
 
+/// Immutable after `Prepare` and shared by all threads.
 class Light {
  public:
   virtual ~Light() = default;
@@ -93,8 +96,10 @@ class Light {
 
   /// Total emitted flux, as `Sample_Le` emits it, in W (scene units).
   virtual Color Power() const = 0;
-  /// About the irradiance that the light may bring to a point, for the choice among lights; in the unit of `Power` over
-  /// area where the light knows better than its power. Zero only where surely none of its light arrives.
+  /// About the irradiance that the light brings to a point, W / m^2 where the light reckons it; by default its power,
+  /// W, which a light that is chosen against others had better override. For the choice among lights: finite, not
+  /// negative, and zero only where surely none of its light arrives and counts (see `LightContext`), whatever stands
+  /// between.
   virtual double ImportanceAt(const LightContext&) const { return static_cast<double>(Power().MaxComponent()); }
 
   /// A direction toward the light; nothing where none of its light arrives (whatever stands between).

@@ -33,8 +33,8 @@ double PointImportance(const LightContext& at, const Vec3& origin, double intens
 }
 
 double ReceiverCosine(const LightContext& at, const Vec3& wi) {
-  if (LengthSquared(at.ns) == 0) return 1;
-  const double cosTheta = Dot(ToDouble(at.ns), ToDouble(wi));
+  if (LengthSquared(at.n) == 0) return 1;
+  const double cosTheta = Dot(ToDouble(at.n), ToDouble(wi));
   return at.transmissive ? std::abs(cosTheta) : std::max(0.0, cosTheta);
 }
 

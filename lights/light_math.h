@@ -18,8 +18,8 @@ double PointImportance(const LightContext& at, const Vec3& origin, double intens
 /// |cos| between the surface at `at` and the unit vector `wi`; 0 from behind an opaque surface, 1 without a surface.
 double ReceiverCosine(const LightContext& at, const Vec3& wi);
 
-/// True where the surface at `at` is opaque, so that light from behind `ns` does not count.
-inline bool HasHorizon(const LightContext& at) { return !at.transmissive && LengthSquared(at.ns) > 0; }
+/// True where the surface at `at` is opaque, so that light from behind `n` does not count.
+inline bool HasHorizon(const LightContext& at) { return !at.transmissive && LengthSquared(at.n) > 0; }
 
 /// A point along `wi` from `p` that lies outside the scene.
 Vec3 PointOutside(const SceneExtent& extent, const Vec3& p, const Vec3& wi);

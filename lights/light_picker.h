@@ -9,6 +9,7 @@
 
 namespace dapple {
 
+/// A light, drawn.
 struct PickedLight {
   int index = -1;          ///< in the scene's list
   double probability = 0;  ///< discrete
@@ -19,11 +20,14 @@ struct PickedLight {
 /// zero, or not finite). Made after `Light::Prepare`; the lights must live as long.
 class LightPicker {
  public:
+  /// None of `lights` is null.
   explicit LightPicker(const std::vector<std::unique_ptr<Light>>& lights);
 
   /// Nothing where no light emits.
   bool Empty() const { return lightCount_ == 0; }
+  /// A light for a photon, u in [0, 1). There must be lights.
   PickedLight PickByPower(double u) const;
+  /// The discrete probability with which `PickByPower` gives `light`.
   double ProbabilityByPower(int light) const;
   /// The random number with which `PickByPower` gives `light` and leaves `u`.
   double InvertByPower(int light, double u) const;
@@ -32,6 +36,7 @@ class LightPicker {
   /// of even choice among those that can reach it at all. By power where there are more than `kMostWeighed` lights.
   /// The probability is bit for bit what `ProbabilityFor` gives.
   PickedLight PickFor(const LightContext& at, double u) const;
+  /// The discrete probability with which `PickFor` gives `light` at this point.
   double ProbabilityFor(const LightContext& at, int light) const;
 
   static constexpr int kMostWeighed = 32;

@@ -1,6 +1,6 @@
 // A point light: the same radiant intensity in all directions, from one point.
 //
-// pbrt: `LightSource "point"`. Parameters: `position` (render space), `intensity` in W / sr.
+// pbrt: `LightSource "point"`.
 #pragma once
 
 #include "lights/light.h"
@@ -9,6 +9,7 @@ namespace dapple {
 
 class PointLight final : public Light {
  public:
+  /// `position` in render space, `intensity` in W / sr.
   PointLight(const Vec3& position, const Color& intensity) : position_(position), intensity_(intensity) {}
 
   std::string_view Name() const override { return "point"; }

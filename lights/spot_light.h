@@ -27,6 +27,7 @@ class SpotProfile {
   double Integral() const { return xStart_ + rimIntegral_; }
   /// x of density Evaluate(x) / Integral() for u in [0, 1).
   double Sample(double u) const;
+  /// u with which `Sample` gives x.
   double Invert(double x) const;
 
  private:

@@ -102,7 +102,7 @@ int RunInfo(const SceneOptions& options) {
   const ThreadLimit threads(options.threads);
   Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   const LoadedScene loaded = Load(options, diagnostics);
-  const RenderPlan plan = MakePlan(*loaded.scene, options);
+  const RenderPlan plan = MakePlan(*loaded.scene, options, diagnostics);
   PrintLine("scene", options.scene);
   PrintLine("format", fmt::format("pbrt version {}: {}", loaded.version, loaded.versionReason));
   PrintContents(*loaded.scene);

@@ -68,7 +68,8 @@ void ProgressDisplay::ShowBar(const RenderProgress& progress) {
 
 void ProgressDisplay::ShowLine(const RenderProgress& progress) {
   const int tenths = static_cast<int>(std::floor(progress.fraction * 10 + 1e-9));
-  if (tenths <= tenthsShown_) return;
+  // The first pass always has its line: it tells how fast the rest will go.
+  if (tenths <= tenthsShown_ && progress.passesDone != 1) return;
   tenthsShown_ = tenths;
   fmt::print(stderr, "{:3} %: {}\n", tenths * 10, Describe(progress));
 }

@@ -82,12 +82,13 @@ void WarnOfNonFinite(const Film& film) {
              FormatNumberOf(film.NonFiniteCount(), "sample was", "samples were"));
 }
 
-RenderRecord MakeRecord(const RenderOptions& options, const RenderPlan& plan, const RenderResult& result) {
+RenderRecord MakeRecord(const RenderOptions& options, const RenderPlan& plan, const RenderResult& result,
+                        const Film& film) {
   RenderRecord record;
   record.scene = std::filesystem::path(options.scene).filename().string();
   record.integrator = plan.choice.name;
   record.seed = plan.seed;
-  record.passes = result.passes;
+  record.passes = static_cast<int>(film.PassCount());
   if (plan.budget.seconds || options.recordsSeconds) record.seconds = result.seconds;
   return record;
 }
@@ -116,13 +117,12 @@ int RunRender(RenderOptions options) {
     options.outputs.push_back(DefaultOutput(options.scene, scene.Settings()));
     CheckOutput(options.outputs[0]);
   }
-  const RenderPlan plan = MakePlan(scene, options);
+  const RenderPlan plan = MakePlan(scene, options, diagnostics);
   if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
   }
-  if (!options.isQuiet) PrintStart(options, scene, plan);
-
   const StopSignals signals;
+  if (!options.isQuiet) PrintStart(options, scene, plan);
   Film film(scene.Settings().resolution, scene.Settings().crop, scene.Settings().filter);
   const RenderResult result = RenderWithProgress(scene, plan, signals, options.isQuiet, film);
   if (film.PassCount() == 0) {
@@ -130,7 +130,7 @@ int RunRender(RenderOptions options) {
     return 128 + signals.Signal();
   }
   const Image picture = ToPicture(film, scene.Settings());
-  const RenderRecord record = MakeRecord(options, plan, result);
+  const RenderRecord record = MakeRecord(options, plan, result, film);
   const ImageMetadata metadata = ToMetadata(record);
   for (const std::string& output : options.outputs) {
     WriteOutput(output, picture, metadata);

@@ -1,5 +1,7 @@
 #include "src/app/scene_options.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -10,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "src/image/image_io.h"
 #include "src/io/pbrt_parser.h"
 
 namespace dapple {
@@ -29,11 +32,21 @@ std::optional<std::vector<T>> SplitNumbers(const std::string& text, char separat
   return std::nullopt;
 }
 
+/// What is wrong with `text` as a number above 0; empty where nothing is. CLI11's own check lets NaN pass.
+std::string CheckPositive(const std::string& text) {
+  const auto number = SplitNumbers<double>(text, ',');
+  const bool isPositive = number && number->size() == 1 && number->front() > 0 && std::isfinite(number->front());
+  return isPositive ? "" : fmt::format("expected a number above 0, not '{}'", text);
+}
+
+/// Pictures that could not be written are refused before they are rendered.
 Vec2i ParseResolution(const std::string& text) {
   const auto sizes = SplitNumbers<int>(text, 'x');
-  if (!sizes || sizes->size() != 2 || (*sizes)[0] < 1 || (*sizes)[1] < 1) {
-    throw CLI::ValidationError("--resolution",
-                               fmt::format("expected WIDTHxHEIGHT in pixels, as in 640x480, not '{}'", text));
+  const auto isSide = [](int size) { return size >= 1 && size <= kMaxImageSide; };
+  if (!sizes || sizes->size() != 2 || !isSide((*sizes)[0]) || !isSide((*sizes)[1])) {
+    throw CLI::ValidationError(
+        "--resolution", fmt::format("expected WIDTHxHEIGHT in pixels, as in 640x480 and at most {} each, not '{}'",
+                                    kMaxImageSide, text));
   }
   return {(*sizes)[0], (*sizes)[1]};
 }
@@ -54,7 +67,7 @@ void AddSceneGroup(CLI::App* command, SceneOptions* options) {
   command
       ->add_option("--pbrt-version", options->pbrtVersion,
                    "Read the file as of this version of pbrt; found from the text otherwise")
-      ->check(CLI::IsMember({3, 4}))
+      ->check(CLI::IsMember({3, 4}).description(""))
       ->type_name("3|4")
       ->group(group);
   command
@@ -84,13 +97,13 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
                                   ->type_name("N")
                                   ->group(group);
   command->add_option("--time", options->seconds, "Render for so long, to within a pass")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(CheckPositive)
       ->excludes(passes)
       ->type_name("SECONDS")
       ->group(group);
   command->add_option("--seed", options->seed, "Seed of all random numbers")->type_name("N")->group(group);
   command->add_option("--max-depth", options->maxDepth, "Scattering events on a path")
-      ->check(CLI::NonNegativeNumber.description(""))
+      ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
       ->type_name("N")
       ->group(group);
   command->add_option("--photons", options->photons, "Light paths a pass")
@@ -98,7 +111,7 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
       ->type_name("N")
       ->group(group);
   command->add_option("--radius", options->radius, "Starting radius of photon lookups, in the scene's units")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(CheckPositive)
       ->type_name("R")
       ->group(group);
   command
@@ -132,6 +145,14 @@ void SetBudget(const RenderSettings& settings, const SceneOptions& options, Rend
   }
 }
 
+void WarnOfLackingIntegrator(const RenderSettings& settings, const IntegratorChoice& choice, Diagnostics& diagnostics) {
+  const std::vector<std::string_view> known = IntegratorNames();
+  if (settings.integrator.empty() || std::find(known.begin(), known.end(), settings.integrator) != known.end()) return;
+  diagnostics.Warn(settings.integratorLocation,
+                   fmt::format("integrator \"{}\" is not one of Dapple's ({}); what the scene holds decides: {}",
+                               settings.integrator, fmt::join(known, ", "), choice.name));
+}
+
 }  // namespace
 
 void SceneOptions::AddTo(CLI::App* command) {
@@ -147,10 +168,11 @@ LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
   return {description.version, description.versionReason, BuildScene(description, build, diagnostics)};
 }
 
-RenderPlan MakePlan(const Scene& scene, const SceneOptions& options) {
+RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics) {
   const RenderSettings& settings = scene.Settings();
   RenderPlan plan;
   plan.choice = ResolveIntegrator(options.integrator, scene);
+  if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
   plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
   plan.options.radius = Either(options.radius, settings.radius);

@@ -3,7 +3,7 @@
 //   SceneOptions options;
 //   options.AddTo(command);                         // before parsing
 //   const LoadedScene loaded = Load(options, diagnostics);
-//   const RenderPlan plan = MakePlan(*loaded.scene, options);
+//   const RenderPlan plan = MakePlan(*loaded.scene, options, diagnostics);
 #pragma once
 
 #include <array>
@@ -60,7 +60,8 @@ struct RenderPlan {
   int seed = 0;
 };
 
-/// The command line's values, else the scene's, else the integrator's. Throws `Error` for an unknown integrator.
-RenderPlan MakePlan(const Scene& scene, const SceneOptions& options);
+/// The command line's values, else the scene's, else the integrator's. Warns of an integrator of the scene's that
+/// Dapple lacks, unless the command line names one. Throws `Error` for an unknown integrator of the command line's.
+RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics);
 
 }  // namespace dapple

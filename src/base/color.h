@@ -49,12 +49,6 @@ Color Map(const Color& c, F f) {
   return {f(c.r), f(c.g), f(c.b)};
 }
 
-inline Color Sqrt(const Color& c) {
-  return Map(c, [](float x) { return std::sqrt(std::max(0.f, x)); });
-}
-inline Color Exp(const Color& c) {
-  return Map(c, [](float x) { return std::exp(x); });
-}
 inline Color Clamp(const Color& c, float low, float high) {
   return Map(c, [=](float x) { return std::clamp(x, low, high); });
 }

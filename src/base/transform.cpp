@@ -39,13 +39,6 @@ Transform Transform::CameraToWorldLookAt(const Vec3d& eye, const Vec3d& target, 
   return FromRows(rows);
 }
 
-Transform Transform::Perspective(double fovDegrees, double near, double far) {
-  const double a = far / (far - near);
-  const double rows[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, a, -near * a, 0, 0, 1, 0};
-  const double scale = 1 / std::tan(Radians(fovDegrees) / 2);
-  return Scale({scale, scale, 1}) * FromRows(rows);
-}
-
 Transform Transform::Inverse() const { return {inverse_, matrix_}; }
 
 Transform Transform::operator*(const Transform& b) const { return {b.matrix_ * matrix_, inverse_ * b.inverse_}; }

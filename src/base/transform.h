@@ -24,8 +24,6 @@ class Transform {
   /// From the camera's space (x right, y up, z into the scene; left-handed, as in pbrt) to the world.
   /// `up` parallel to the view gives a singular transform.
   static Transform CameraToWorldLookAt(const Vec3d& eye, const Vec3d& target, const Vec3d& up);
-  /// Perspective onto [-1, 1]^2 at z = 1 for a full field of view in degrees; z from near to far becomes 0 to 1.
-  static Transform Perspective(double fovDegrees, double near, double far);
 
   Transform Inverse() const;
   Transform operator*(const Transform& b) const;

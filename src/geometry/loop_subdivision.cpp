@@ -250,7 +250,7 @@ SubdividedMesh LoopSubdivide(int levels, const std::vector<Vec3>& positions, con
   result.normals.reserve(points.size());
   for (int vertex = 0; vertex < mesh.VertexCount(); ++vertex) {
     result.positions.push_back(ToFloat(limit[vertex]));
-    result.normals.push_back(ToFloat(Normalize(LimitNormal(mesh, limit, vertex, &ring))));
+    result.normals.push_back(ToFloat(LimitNormal(mesh, limit, vertex, &ring)));
   }
   for (const Triangle& triangle : mesh.Triangles())
     result.indices.insert(result.indices.end(), triangle.begin(), triangle.end());

@@ -7,7 +7,8 @@
 
 namespace dapple {
 
-/// A refined mesh: its vertices lie on the limit surface, with that surface's unit normals.
+/// A refined mesh: its vertices lie on the limit surface, with that surface's normals. These are the cross products of
+/// its tangents and not of unit length: as in pbrt, the longer ones weigh more where they are interpolated.
 struct SubdividedMesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;

@@ -8,12 +8,14 @@
 
 namespace dapple {
 
+/// What the parts are built from; the description and the diagnostics must live as long.
 struct BuildContext {
   const SceneDescription& description;
   Diagnostics& diagnostics;
   /// The world, moved so that what the camera sees is near the origin.
   Transform renderFromWorld;
 
+  /// The file is in version 3 of the format; else 4.
   bool IsV3() const { return description.version == 3; }
 };
 

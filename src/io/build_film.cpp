@@ -1,8 +1,12 @@
 #include "src/io/build_film.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
+
+#include "src/io/nearest_name.h"
 
 namespace dapple {
 
@@ -145,13 +149,27 @@ Filter BuildFilter(const BuildContext& context) {
   FailUnknownName(filter.location, "pixel filter", type, {"box", "gaussian", "mitchell", "sinc", "triangle"});
 }
 
+int GetStratifiedSamples(const Entity& sampler) {
+  const int64_t product = int64_t{GetIntAtLeast(sampler, "xsamples", 4, 1)} * GetIntAtLeast(sampler, "ysamples", 4, 1);
+  constexpr int kMost = std::numeric_limits<int>::max();
+  if (product > kMost)
+    throw Error(sampler.params.LocationOf("xsamples", sampler.location),
+                fmt::format("\"xsamples\" times \"ysamples\" is {}, expected at most {}", product, kMost));
+  return static_cast<int>(product);
+}
+
 void BuildSampler(const BuildContext& context, RenderSettings* settings) {
   const Entity& sampler = context.description.sampler;
   if (!sampler.IsGiven()) return;
-  if (sampler.type == "stratified")
-    settings->samplesPerPixel = GetIntAtLeast(sampler, "xsamples", 4, 1) * GetIntAtLeast(sampler, "ysamples", 4, 1);
-  else
-    settings->samplesPerPixel = GetIntAtLeast(sampler, "pixelsamples", 16, 1);
+  // How samples are laid out is Dapple's own matter: of a sampler only their number counts.
+  static const std::vector<std::string> kKnown = {"02sequence", "halton",      "independent", "lowdiscrepancy",
+                                                  "maxmindist", "paddedsobol", "pmj02bn",     "random",
+                                                  "sobol",      "stratified",  "zsobol"};
+  if (std::find(kKnown.begin(), kKnown.end(), sampler.type) == kKnown.end())
+    context.diagnostics.Warn(sampler.location,
+                             fmt::format("unknown sampler \"{}\"{}", sampler.type, DidYouMean(sampler.type, kKnown)));
+  settings->samplesPerPixel =
+      sampler.type == "stratified" ? GetStratifiedSamples(sampler) : GetIntAtLeast(sampler, "pixelsamples", 16, 1);
   if (sampler.params.Has("seed")) settings->seed = sampler.params.GetInt("seed", 0);
   // How pbrt's own sequences are made; Dapple has its own.
   sampler.params.ReportUnused(context.diagnostics, {"pixelsamples", "xsamples", "ysamples", "jitter", "dimensions",
@@ -178,6 +196,7 @@ void BuildIntegrator(const BuildContext& context, RenderSettings* settings) {
   const Entity& integrator = context.description.integrator;
   if (!integrator.IsGiven()) return;
   settings->integrator = integrator.type == "volpath" ? "path" : integrator.type;
+  settings->integratorLocation = integrator.location;
   settings->maxDepth = GetIntAtLeast(integrator, "maxdepth", kPbrtDefaultDepth, 0);
   if (integrator.params.Has("seed")) settings->seed = integrator.params.GetInt("seed", 0);
   if (integrator.type == "sppm") {
@@ -212,6 +231,17 @@ void BuildIntegrator(const BuildContext& context, RenderSettings* settings) {
                                                        "radius"});
 }
 
+/// Of pbrt-v4's Option statements.
+void BuildOptionStatements(const BuildContext& context, RenderSettings* settings) {
+  const ParameterList& options = context.description.options;
+  if (options.Has("seed")) settings->seed = options.GetInt("seed", 0);
+  for (const char* name : {"disablepixeljitter", "displacementedgescale", "forcediffuse"})
+    WarnUnsupported(context, options, name);
+  // Of pbrt's own machinery; the picture does not depend on them, or not here.
+  options.ReportUnused(context.diagnostics, {"disabletexturefiltering", "disablewavelengthjitter", "msereferenceimage",
+                                             "msereferenceout", "pixelstats", "rendercoordsys", "wavefront"});
+}
+
 }  // namespace
 
 RenderSettings BuildSettings(const BuildContext& context, const BuildOptions& options) {
@@ -221,8 +251,7 @@ RenderSettings BuildSettings(const BuildContext& context, const BuildOptions& op
   context.description.pixelFilter.params.ReportUnused(context.diagnostics);
   BuildSampler(context, &settings);
   BuildIntegrator(context, &settings);
-  const ParameterList& sceneOptions = context.description.options;
-  if (sceneOptions.Has("seed")) settings.seed = sceneOptions.GetInt("seed", 0);
+  BuildOptionStatements(context, &settings);
   return settings;
 }
 

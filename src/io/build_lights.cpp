@@ -91,14 +91,15 @@ double PbrtUpperIlluminance(const Image& map) {
 std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescription& light, const Parameter& fileName) {
   const BuildContext& context = values.Context();
   const bool isV3 = context.IsV3();
-  const std::shared_ptr<const Image> file = values.GetImage(fileName, ColorEncoding::SRgb());
-  if (!isV3 && file->Width() != file->Height())
+  // Not through the cache, whose repair would put out an infinitely bright sun.
+  const Image file = ReadImage(values.FilePath(fileName), ColorEncoding::SRgb(), fileName.location);
+  if (!isV3 && file.Width() != file.Height())
     throw Error(fileName.location,
                 fmt::format("environment map \"{}\" is of {} x {} pixels, expected a square one: pbrt-v4 maps are "
                             "equal-area (octahedral), and \"imgtool makeequiarea\" makes them from latitude-longitude",
-                            fileName.strings[0], file->Width(), file->Height()));
+                            fileName.strings[0], file.Width(), file.Height()));
   int64_t repaired = 0;
-  const Image map = EnvironmentLight::RepairEnvironment(*file, &repaired);
+  const Image map = EnvironmentMap::Repair(file, &repaired);
   if (repaired > 0)
     context.diagnostics.Warn(fileName.location,
                              fmt::format("{} pixels of \"{}\" are no radiance (negative, infinite or "

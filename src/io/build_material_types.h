@@ -16,6 +16,7 @@ struct MaterialInput {
   const MaterialDescription& material;
 
   const ParameterList& Params() const { return material.params; }
+  /// The material's colour or number of that name, as a texture; never null. Throws as `Values::GetColor`.
   ColorTexturePtr ColorOf(std::string_view name, double fallback) const {
     return values.GetColor(Params(), name, Color(static_cast<float>(fallback)));
   }
@@ -32,8 +33,9 @@ Roughness BuildRoughness(const MaterialInput& in, double fallback, RoughnessRema
 /// An index of refraction that no texture may vary: where one does, a warning, and the fallback.
 float GetUniformEta(const MaterialInput& in, std::string_view name, double fallback);
 
-// Each gives null where `type` is none of its own.
+/// A material of v3's types; null where `type` is none of them. Throws `Error` at the place of what is wrong.
 std::unique_ptr<Material> BuildV3Material(const MaterialInput& in);
+/// A material of v4's types; likewise.
 std::unique_ptr<Material> BuildV4Material(const MaterialInput& in);
 /// A stand-in, with a warning.
 std::unique_ptr<Material> BuildStandIn(const MaterialInput& in);

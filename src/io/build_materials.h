@@ -13,6 +13,7 @@ namespace dapple {
 /// Builds the materials that shapes ask for, each once.
 class Materials {
  public:
+  /// `values` must live as long.
   explicit Materials(Values& values);
 
   /// Where the description's material stands in the list that `Take` gives; -1 for an interface that light passes

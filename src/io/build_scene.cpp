@@ -74,11 +74,13 @@ FloatTexturePtr Assembler::FindAlpha(const ShapeDescription& shape, bool isLight
   if (shape.params.Has("shadowalpha"))
     context_.diagnostics.Warn(shape.params.LocationOf("shadowalpha", shape.location),
                               "parameter \"shadowalpha\" is not supported; shadows follow \"alpha\"");
-  const FloatTexturePtr alpha = values_.FindFloat(shape.params, "alpha");
-  if (!alpha || !alpha->IsConstant()) return alpha;
-  const float value = alpha->Evaluate(TextureContext());
-  if (value >= 1 || (context_.IsV3() && value != 0)) return nullptr;
-  if (isLight && !(value > 0)) {
+  FloatTexturePtr alpha = values_.FindFloat(shape.params, "alpha");
+  if (!alpha) return nullptr;
+  if (context_.IsV3()) alpha = std::make_shared<BinaryAlpha>(alpha);
+  if (!alpha->IsConstant()) return alpha;
+  const float coverage = Coverage(*alpha, TextureContext());
+  if (coverage == 1) return nullptr;
+  if (isLight && coverage == 0) {
     context_.diagnostics.Warn(shape.params.LocationOf("alpha", shape.location),
                               "an area light that cannot be seen is not supported; it will be seen");
     return nullptr;
@@ -93,8 +95,7 @@ void Assembler::AddShape(const ShapeDescription& shape, const Transform& targetF
     return;
   }
   const FloatTexturePtr alpha = FindAlpha(shape, areaLight != nullptr);
-  const std::shared_ptr<const HitFilter> filter =
-      alpha ? std::make_shared<AlphaFilter>(alpha, context_.IsV3()) : nullptr;
+  const std::shared_ptr<const HitFilter> filter = alpha ? std::make_shared<AlphaFilter>(alpha) : nullptr;
   for (std::unique_ptr<Shape>& built : BuildShapes(context_, shape, targetFromWorld)) {
     ScenePrimitive primitive;
     primitive.shape = std::move(built);

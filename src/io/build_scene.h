@@ -27,10 +27,11 @@ struct BuildOptions {
 /// The parts of the scene, as `Scene` takes them. Throws `Error`.
 SceneParts BuildSceneParts(const SceneDescription& description, const BuildOptions& options, Diagnostics& diagnostics);
 
+/// The scene, ready to trace. Throws `Error`.
 std::unique_ptr<Scene> BuildScene(const SceneDescription& description, const BuildOptions& options,
                                   Diagnostics& diagnostics);
 
-/// Reads and builds the scene file at `path`.
+/// Reads and builds the scene file at `path`. Throws `Error`.
 std::unique_ptr<Scene> LoadScene(const std::filesystem::path& path, const BuildOptions& options,
                                  Diagnostics& diagnostics);
 

@@ -169,13 +169,16 @@ FloatTexturePtr Values::FindIndexOfRefraction(const ParameterList& params, std::
   return FindFloat(params, name);
 }
 
-std::shared_ptr<const Image> Values::GetImage(const Parameter& fileName, ColorEncoding encoding) {
+std::string Values::FilePath(const Parameter& fileName) const {
   if (fileName.type != ParameterType::String)
     throw Error(fileName.location,
                 fmt::format("parameter \"{}\" is \"{}\", expected \"string\"", fileName.name, TypeName(fileName.type)));
   CheckOneValue(fileName, fileName.Count());
-  const std::filesystem::path path = context_.description.ResolvePath(fileName.strings[0], fileName.location);
-  return images_.Get(path.string(), encoding, fileName.location);
+  return context_.description.ResolvePath(fileName.strings[0], fileName.location).string();
+}
+
+std::shared_ptr<const Image> Values::GetImage(const Parameter& fileName, ColorEncoding encoding) {
+  return images_.Get(FilePath(fileName), encoding, fileName.location);
 }
 
 }  // namespace dapple

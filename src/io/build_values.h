@@ -29,6 +29,7 @@ class GrayTexture final : public ColorTexture {
 /// Builds what parameters say; builds textures when they are first asked for, each once.
 class Values {
  public:
+  /// `context` must live as long.
   explicit Values(const BuildContext& context);
 
   const BuildContext& Context() const { return context_; }
@@ -47,7 +48,9 @@ class Values {
   /// A spectrum parameter's function of the wavelength.
   Spectrum ToSpectrum(const Parameter& parameter) const;
 
-  /// The image that a parameter names.
+  /// The path of the file that a parameter names. Throws `Error` where it is no string, or more than one.
+  std::string FilePath(const Parameter& fileName) const;
+  /// The image that a parameter names, fit for textures (`ImageCache::Get`).
   std::shared_ptr<const Image> GetImage(const Parameter& fileName, ColorEncoding encoding);
 
  private:

@@ -62,10 +62,6 @@ std::vector<Vector> Vectors(const Parameter& parameter) {
   return result;
 }
 
-Vec2d Pair(const Parameter* parameter, const Vec2d& fallback) {
-  return parameter ? Vec2d(parameter->numbers[0], parameter->numbers[1]) : fallback;
-}
-
 Vec3d Triple(const Parameter* parameter, const Vec3d& fallback) {
   return parameter ? Vec3d(parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]) : fallback;
 }
@@ -144,24 +140,12 @@ std::string ParameterList::GetString(std::string_view name, const std::string& f
   return parameter ? parameter->strings[0] : fallback;
 }
 
-Vec2d ParameterList::GetPoint2(std::string_view name, const Vec2d& fallback) const {
-  return Pair(FindCounted(name, ParameterType::Point2, 1), fallback);
-}
-
-Vec2d ParameterList::GetVector2(std::string_view name, const Vec2d& fallback) const {
-  return Pair(FindCounted(name, ParameterType::Vector2, 1), fallback);
-}
-
 Vec3d ParameterList::GetPoint3(std::string_view name, const Vec3d& fallback) const {
   return Triple(FindCounted(name, ParameterType::Point3, 1), fallback);
 }
 
 Vec3d ParameterList::GetVector3(std::string_view name, const Vec3d& fallback) const {
   return Triple(FindCounted(name, ParameterType::Vector3, 1), fallback);
-}
-
-Vec3d ParameterList::GetNormal(std::string_view name, const Vec3d& fallback) const {
-  return Triple(FindCounted(name, ParameterType::Normal, 1), fallback);
 }
 
 std::vector<double> ParameterList::GetFloatArray(std::string_view name, int expectedCount) const {

@@ -71,6 +71,7 @@ class ParameterList {
   /// Adds what is not there yet, as inherited (the defaults that v4's `Attribute` sets).
   void AddDefaults(const ParameterList& defaults);
 
+  /// All parameters in the file's order; neither counts as a look-up.
   bool IsEmpty() const { return parameters_.empty(); }
   const std::vector<Parameter>& All() const { return parameters_; }
   std::vector<Parameter>& All() { return parameters_; }
@@ -79,6 +80,7 @@ class ParameterList {
   const Parameter* Find(std::string_view name) const;
   /// As `Find`, but an Error where the type is not `type` ('parameter "radius" is "string", expected "float"').
   const Parameter* Find(std::string_view name, ParameterType type) const;
+  /// True where the parameter is there, of whatever type. Counts as a look-up.
   bool Has(std::string_view name) const { return Find(name) != nullptr; }
 
   // One value. Errors: wrong type, more than one value.
@@ -86,11 +88,8 @@ class ParameterList {
   int GetInt(std::string_view name, int fallback) const;
   bool GetBool(std::string_view name, bool fallback) const;
   std::string GetString(std::string_view name, const std::string& fallback) const;
-  Vec2d GetPoint2(std::string_view name, const Vec2d& fallback) const;
-  Vec2d GetVector2(std::string_view name, const Vec2d& fallback) const;
   Vec3d GetPoint3(std::string_view name, const Vec3d& fallback) const;
   Vec3d GetVector3(std::string_view name, const Vec3d& fallback) const;
-  Vec3d GetNormal(std::string_view name, const Vec3d& fallback) const;
 
   // All values; empty where the parameter is absent. `expectedCount` >= 0: an Error where another number is
   // given. A number beyond the range of the result is an Error too.

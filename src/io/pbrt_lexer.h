@@ -38,6 +38,7 @@ class PbrtLexer {
   /// left for `Next`. The fast way through the large arrays of a mesh.
   void ReadNumbers(std::vector<double>* numbers);
 
+  /// Where a token stands, for messages.
   FileLocation Location(const Token& token) const { return {fileName_, token.line, token.column}; }
   const std::shared_ptr<const std::string>& FileName() const { return fileName_; }
 

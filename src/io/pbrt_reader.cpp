@@ -19,11 +19,13 @@ PbrtReader::PbrtReader(int assumedVersion, const std::filesystem::path& folder, 
 }
 
 void PbrtReader::ReadFile(const std::filesystem::path& path) {
-  sources_.PushFile(path, FileLocation(path.string()));
+  here_ = FileLocation(path.string());
+  sources_.PushFile(path, here_);
   Run();
 }
 
 void PbrtReader::ReadText(std::string_view text, const std::string& name) {
+  here_ = FileLocation(name);
   sources_.PushText(std::string(text), name);
   Run();
 }
@@ -231,7 +233,7 @@ void PbrtReader::ObjectInstance() {
 }
 
 SceneDescription PbrtReader::Finish(int version) {
-  if (!isWorld_) throw Error(here_, "the scene has no WorldBegin");
+  if (!isWorld_) throw Error(here_, "the scene has no WorldBegin, expected one before its shapes and lights");
   if (!hasEnded_) {
     const auto open = state_.OpenBlocks();
     if (!open.empty()) throw Error(open.back().location, open.back().message);

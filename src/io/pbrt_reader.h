@@ -22,9 +22,12 @@ class PbrtReader {
   /// `assumedVersion` tells what TransformBegin means. Included files are searched in `folder`.
   PbrtReader(int assumedVersion, const std::filesystem::path& folder, Diagnostics& diagnostics);
 
+  /// Reads a file (plain or gzipped), or text in memory, with all that it includes. Throws Error at the place of what
+  /// is wrong.
   void ReadFile(const std::filesystem::path& path);
   void ReadText(std::string_view text, const std::string& name);
 
+  /// What the words that were read say about the version.
   const PbrtVersionVotes& Votes() const { return votes_; }
   /// Whether what was read could mean something else in another version than the assumed one.
   bool DependsOnVersion() const { return sawTransformBlock_; }

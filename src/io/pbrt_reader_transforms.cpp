@@ -12,11 +12,18 @@ namespace dapple {
 
 namespace {
 
-/// pbrt writes the numbers of a matrix column by column.
-Transform FromColumns(const std::array<double, 16>& numbers) {
-  double rows[16];
-  for (std::size_t row = 0; row < 4; ++row)
-    for (std::size_t column = 0; column < 4; ++column) rows[4 * row + column] = numbers[4 * column + row];
+/// pbrt writes the numbers of a matrix column by column. The last one divides all others; of a projection, which
+/// shapes and instances could not follow, the affine part remains.
+Transform FromColumns(const std::array<double, 16>& numbers, const FileLocation& location, Diagnostics& diagnostics) {
+  if (numbers[3] != 0 || numbers[7] != 0 || numbers[11] != 0)
+    diagnostics.Warn(location, fmt::format("projections are not supported: the matrix's last row is {} {} {} {}, "
+                                           "expected 0 0 0 1; its first three numbers are ignored",
+                                           numbers[3], numbers[7], numbers[11], numbers[15]));
+  const double w = numbers[15] != 0 ? numbers[15] : 1;
+  double rows[16] = {};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < 4; ++column) rows[4 * row + column] = numbers[4 * column + row] / w;
+  rows[15] = numbers[15] / w;
   return Transform::FromRows(rows);
 }
 
@@ -51,9 +58,9 @@ void PbrtReader::LookAt() {
   state_.Concatenate(worldFromCamera.Inverse(), here_);
 }
 
-void PbrtReader::SetTransform() { state_.SetTransform(FromColumns(ReadNumbers<16>()), here_); }
+void PbrtReader::SetTransform() { state_.SetTransform(FromColumns(ReadNumbers<16>(), here_, *diagnostics_), here_); }
 
-void PbrtReader::ConcatTransform() { state_.Concatenate(FromColumns(ReadNumbers<16>()), here_); }
+void PbrtReader::ConcatTransform() { state_.Concatenate(FromColumns(ReadNumbers<16>(), here_, *diagnostics_), here_); }
 
 void PbrtReader::CoordinateSystem() {
   coordinateSystems_[ReadName("a name of the coordinate system")] = state_.Now().transform;

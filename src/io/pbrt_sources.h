@@ -13,6 +13,7 @@ namespace dapple {
 
 class PbrtSources {
  public:
+  /// A text that is being read.
   struct Source {
     std::unique_ptr<const std::string> text;
     std::filesystem::path canonicalPath;  ///< Empty: text from memory.
@@ -28,6 +29,7 @@ class PbrtSources {
   /// lies deeper than 64 files.
   Source& PushFile(const std::filesystem::path& path, const FileLocation& includedAt);
 
+  /// The text that is read now is on top; there must be one for `Top` and `Pop`.
   bool IsEmpty() const { return stack_.empty(); }
   Source& Top() { return stack_.back(); }
   void Pop() { stack_.pop_back(); }

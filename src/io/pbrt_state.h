@@ -20,11 +20,13 @@ namespace dapple {
 /// anywhere.
 class ScopedNames {
  public:
+  /// From now on the name means `index` (>= 0).
   void Define(const std::string& name, int index);
   /// Index of the definition, or -1.
   int Find(const std::string& name) const;
   /// Whether a definition is in scope.
   bool IsInScope(const std::string& name) const { return inScope_.contains(name); }
+  /// Every name that was ever defined.
   std::vector<std::string> All() const;
 
   /// `Rollback(Mark())` takes the scope back to where it was at Mark.
@@ -62,6 +64,7 @@ class PbrtState {
   PbrtState(bool transformBlocksSaveAll, Diagnostics& diagnostics)
       : transformBlocksSaveAll_(transformBlocksSaveAll), diagnostics_(diagnostics) {}
 
+  /// The state at this place of the file.
   GraphicsState& Now() { return now_; }
   const GraphicsState& Now() const { return now_; }
 
@@ -72,10 +75,12 @@ class PbrtState {
   void Concatenate(const Transform& transform, const FileLocation& location);
   void SetTransform(const Transform& transform, const FileLocation& location);
 
+  /// Opens a block, at `location`.
   void Begin(BlockKind kind, const FileLocation& location);
   /// Throws Error where the innermost open block is of another kind. A Transform block of v3 restores the transform,
   /// the others restore all.
   void End(BlockKind kind, const FileLocation& location);
+  /// How many blocks are open.
   std::size_t BlockCount() const { return blocks_.size(); }
   /// One message for each block that is still open beyond the first `count`: "AttributeBegin without AttributeEnd", the
   /// innermost last.

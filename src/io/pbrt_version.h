@@ -13,6 +13,7 @@
 
 namespace dapple {
 
+/// What a word names: the same word may be a directive and a material.
 enum class WordKind {
   Directive,
   ParameterType,
@@ -45,6 +46,7 @@ class PbrtVersionVotes {
   /// Weighs the names of parameters of one statement.
   void SawParameters(WordKind kind, const ParameterList& parameters);
 
+  /// 3 or 4: of the heavier side.
   int Version() const;
   /// The weightiest words for `version`, for people; "nothing in the file tells ..." where there are none.
   std::string Reason(int version) const;

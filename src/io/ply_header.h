@@ -36,6 +36,7 @@ struct PlyHeader {
   std::size_t byteCount = 0;  ///< The body begins here.
   int lineCount = 0;
 
+  /// Of the element "vertex"; 0 where there is none.
   std::size_t VertexCount() const;
 };
 

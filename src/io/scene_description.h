@@ -21,6 +21,7 @@ struct Entity {
   ParameterList params;
   FileLocation location;  ///< Of the directive; no file: not given.
 
+  /// The file has such a statement.
   bool IsGiven() const { return location.file != nullptr; }
 };
 

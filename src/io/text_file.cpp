@@ -18,8 +18,6 @@ constexpr std::size_t kChunk = std::size_t{1} << 20;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
-
 std::string QuotedPath(const std::filesystem::path& path) { return Quoted(path.string(), 4096); }
 
 struct InflateStream {
@@ -105,40 +103,6 @@ NumberStatus ParseNumber(const char* begin, const char* last, double* value, con
   if (status != std::errc::result_out_of_range) return NumberStatus::Malformed;
   *value = 0;
   return IsHuge(unsignedBegin, behind) ? NumberStatus::Overflow : NumberStatus::Ok;
-}
-
-std::vector<double> ParseNumbers(std::string_view text, const std::string& fileName) {
-  std::vector<double> numbers;
-  const char* cursor = text.data();
-  const char* const last = cursor + text.size();
-  const char* lineStart = cursor;
-  int line = 1;
-  while (true) {
-    for (; cursor != last && (IsBlank(*cursor) || *cursor == ',' || *cursor == '#'); ++cursor) {
-      if (*cursor == '#') cursor = std::find(cursor, last, '\n');
-      if (cursor == last) break;
-      if (*cursor == '\n') {
-        ++line;
-        lineStart = cursor + 1;
-      }
-    }
-    if (cursor == last) return numbers;
-    double value = 0;
-    const char* end = cursor;
-    const NumberStatus status = ParseNumber(cursor, last, &value, &end);
-    const auto isBehind = [](char c) { return IsBlank(c) || c == ',' || c == '#'; };
-    if (status != NumberStatus::Ok || (end != last && !isBehind(*end))) {
-      const std::string_view word(cursor, static_cast<std::size_t>(std::find_if(cursor, last, isBehind) - cursor));
-      throw Error({std::make_shared<const std::string>(fileName), line, static_cast<int>(cursor - lineStart) + 1},
-                  fmt::format("expected a finite number, found {}", Quoted(word)));
-    }
-    numbers.push_back(value);
-    cursor = end;
-  }
-}
-
-std::vector<double> ReadNumberFile(const std::filesystem::path& path, const FileLocation& namedAt) {
-  return ParseNumbers(ReadTextFile(path, namedAt), path.string());
 }
 
 std::string Quoted(std::string_view text, std::size_t longest) {

@@ -1,10 +1,9 @@
-// Whole files as text: plain or gzipped (told by their first bytes, not by their names), and files of numbers.
+// Whole files as text: plain or gzipped (told by their first bytes, not by their names); and numbers in text.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "src/base/error.h"
 
@@ -13,11 +12,6 @@ namespace dapple {
 /// The bytes of a file, decompressed where it is gzip (several members too). Throws Error where it is missing, no
 /// regular file, unreadable, or damaged; `namedAt` is the place that names the file.
 std::string ReadTextFile(const std::filesystem::path& path, const FileLocation& namedAt = {});
-
-/// The numbers of a text (SPD files and the like), separated by blanks, line ends or commas; # begins a comment.
-/// Throws Error with line and column of what is not a finite number.
-std::vector<double> ParseNumbers(std::string_view text, const std::string& fileName);
-std::vector<double> ReadNumberFile(const std::filesystem::path& path, const FileLocation& namedAt = {});
 
 enum class NumberStatus { Ok, Malformed, Overflow };
 

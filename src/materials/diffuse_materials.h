@@ -41,6 +41,8 @@ class DiffuseTransmissionMaterial final : public Material {
 /// `transmit`.
 class TranslucentMaterial final : public Material {
  public:
+  /// Colours are clamped to [0, 1], null: black. Fresnel's equations share `ks` out further; where the roughness is
+  /// zero the dielectric is smooth.
   TranslucentMaterial(ColorTexturePtr kd, ColorTexturePtr ks, Roughness roughness, ColorTexturePtr reflect,
                       ColorTexturePtr transmit, SurfaceDetailPtr detail = nullptr);
   Bsdf GetBsdf(const SurfaceInteraction& hit) const override;

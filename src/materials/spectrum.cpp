@@ -190,11 +190,6 @@ Color SpectrumToColorV3(const Spectrum& spectrum) {
                   0.055648 * c.x - 0.204043 * c.y + 1.057311 * c.z});
 }
 
-Color SampledToColor(std::span<const double> wavelengths, std::span<const double> values,
-                     const FileLocation& location) {
-  return SpectrumToColorV3(Spectrum(wavelengths, values, Spectrum::Outside::kConstant, location));
-}
-
 Color SpectrumToColorV4(const Spectrum& spectrum) {
   const Daylight d65 = Daylight::OfTemperature(6503.616);
   const Color color = XyzToRgb(SumOverObserver([&](double nm) { return d65(nm) * spectrum(nm); }));

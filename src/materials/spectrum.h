@@ -60,9 +60,6 @@ Color XyzToRgb(const Xyz& xyz);
 /// the factor 470 / 471 of pbrt's sum and its rounded matrix; so a constant 1 becomes (1.202, 0.946, 0.907). May be
 /// negative.
 Color SpectrumToColorV3(const Spectrum& spectrum);
-/// The same of samples, constant outside. Throws as the constructor of `Spectrum`.
-Color SampledToColor(std::span<const double> wavelengths, std::span<const double> values,
-                     const FileLocation& location = {});
 
 /// A reflectance, an eta or a k in pbrt-v4: its average as seen under D65, so that a constant c becomes (c, c, c). May
 /// be negative.

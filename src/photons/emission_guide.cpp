@@ -26,6 +26,7 @@ class Histogram {
     double sum = 0;
     for (double& weight : weights) sum += weight = std::sqrt(weight);
     if (!(sum > 0)) return {};
+    // What the pilot missed in one table it has often met in the other: an even share in each keeps such photons light.
     for (double& weight : weights)
       weight = (1 - kEvenShare) * weight / sum + kEvenShare / static_cast<double>(weights.size());
     return {std::span<const double>(weights), kCells, kCells};
@@ -51,9 +52,7 @@ class Histogram {
   std::vector<double> sums_;
 };
 
-ContinuousSample2D BendBy(const Distribution2D& table, const Vec2d& u) {
-  return table.Height() == 0 ? ContinuousSample2D{u, 1} : table.Sample(u);
-}
+bool HasCells(const Distribution2D& table) { return table.Height() > 0; }
 
 }  // namespace
 
@@ -88,24 +87,34 @@ EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const Pilo
   for (const Learned& light : learned) lights_.push_back({light.position.ToTable(), light.direction.ToTable()});
 }
 
-EmissionGuide::Bent EmissionGuide::Bend(int light, const Vec2d& position, const Vec2d& direction) const {
+EmissionGuide::Bent EmissionGuide::Bend(int light, const LeRandom& u) const {
   const LightTables& tables = lights_[static_cast<size_t>(light)];
-  const ContinuousSample2D p = BendBy(tables.position, position), d = BendBy(tables.direction, direction);
-  return {p.p, d.p, p.pdf, d.pdf};
+  Bent bent{u, 1};
+  const bool isEven = u.part < kEvenShare;
+  bent.own.part = isEven ? u.part / kEvenShare : (u.part - kEvenShare) / (1 - kEvenShare);
+  if (!isEven && HasCells(tables.position)) bent.own.position = tables.position.Sample(u.position).p;
+  if (!isEven && HasCells(tables.direction)) bent.own.direction = tables.direction.Sample(u.direction).p;
+  bent.pdf = Pdf(light, bent.own);
+  return bent;
 }
 
-EmissionGuide::Bent EmissionGuide::Unbend(int light, const Vec2d& position, const Vec2d& direction) const {
+double EmissionGuide::Pdf(int light, const LeRandom& own) const {
   const LightTables& tables = lights_[static_cast<size_t>(light)];
-  Bent bent{position, direction};
-  if (tables.position.Height() > 0) {
-    bent.position = tables.position.Invert(position);
-    bent.pdfPosition = tables.position.Pdf(position);
-  }
-  if (tables.direction.Height() > 0) {
-    bent.direction = tables.direction.Invert(direction);
-    bent.pdfDirection = tables.direction.Pdf(direction);
-  }
-  return bent;
+  const double position = HasCells(tables.position) ? tables.position.Pdf(own.position) : 1;
+  const double direction = HasCells(tables.direction) ? tables.direction.Pdf(own.direction) : 1;
+  return kEvenShare + (1 - kEvenShare) * position * direction;
+}
+
+LeRandom EmissionGuide::Unbend(int light, const LeRandom& own) const {
+  const LightTables& tables = lights_[static_cast<size_t>(light)];
+  LeRandom u = own;
+  // Lights that make no use of it give 0, which must not fall across the border of the two kinds by rounding.
+  constexpr double kMargin = 1e-9;
+  const double part = std::clamp(own.part, kMargin, 1 - kMargin);
+  u.part = kEvenShare + part * (1 - kEvenShare);
+  if (HasCells(tables.position)) u.position = tables.position.Invert(own.position);
+  if (HasCells(tables.direction)) u.direction = tables.direction.Invert(own.direction);
+  return u;
 }
 
 int64_t EmissionGuide::MemoryBytes() const {

@@ -2,8 +2,11 @@
 // random numbers from which all emission is drawn.
 //
 // Each light keeps two tables, over the two random numbers of its origins and over those of its directions, and a share
-// of the photons. A tenth of each is spread evenly, so that what the pilot missed is still found. The tables bend the
-// cube before the light turns it into a ray, so densities and inverses stay exact whatever was learned.
+// of the photons. A tenth of each table and of the lights' shares is spread evenly, and a tenth of a light's photons
+// ignore its tables, so that what the pilot missed is still found, and no photon of a light weighs more than ten times
+// what it would without a guide. The bend happens before the light turns the cube into a ray, so the density of what is
+// drawn is exact whatever was learned. Asked of a ray, which is rounded to float, it may be that of the neighbour where
+// the ray lies on the border of two cells.
 #pragma once
 
 #include <functional>
@@ -37,14 +40,16 @@ class EmissionGuide {
   double LightProbability(int light) const { return byUse_.Probability(light); }
   double InvertLight(int light, double u) const { return byUse_.InvertDiscrete(light, u); }
 
-  /// The bent random numbers of a light's origin and direction, and the densities with which they are drawn.
+  /// A light's own random numbers, and the density of position and direction together with which they are drawn.
   struct Bent {
-    Vec2d position{0, 0}, direction{0, 0};
-    double pdfPosition = 1, pdfDirection = 1;
+    LeRandom own;
+    double pdf = 1;
   };
-  Bent Bend(int light, const Vec2d& position, const Vec2d& direction) const;
-  /// The densities, and the numbers before bending, of a light's own numbers.
-  Bent Unbend(int light, const Vec2d& position, const Vec2d& direction) const;
+  /// Bends the random numbers of a light: `u.part` decides whether the tables are followed, and is used up to there.
+  Bent Bend(int light, const LeRandom& u) const;
+  double Pdf(int light, const LeRandom& own) const;
+  /// Random numbers that `Bend` turns into `own`: of the two that do, those that follow the tables.
+  LeRandom Unbend(int light, const LeRandom& own) const;
 
   int64_t MemoryBytes() const;
 

@@ -60,13 +60,14 @@ void FollowCameraPath(const Scene& scene, const CameraRay& camera, float pixels,
 
 VisiblePoints FindVisiblePoints(const Scene& scene, uint64_t seed) {
   constexpr double kPaths = 8192;
-  const PixelBounds& crop = scene.Settings().crop;
-  const double step = std::max(1.0, std::sqrt(static_cast<double>(crop.Area()) / kPaths));
+  // Of the whole picture, so that a crop of it is lit by the same photons.
+  const Vec2i& resolution = scene.Settings().resolution;
+  const double step = std::max(1.0, std::sqrt(static_cast<double>(resolution.x) * resolution.y / kPaths));
   std::vector<Vec3> points;
   std::vector<float> reaches;
   int64_t path = 0;
-  for (double y = crop.min.y + step / 2; y < crop.max.y; y += step)
-    for (double x = crop.min.x + step / 2; x < crop.max.x; x += step) {
+  for (double y = step / 2; y < resolution.y; y += step)
+    for (double x = step / 2; x < resolution.x; x += step) {
       Sampler sampler = Sampler::ForLightPath(seed, path++, 0, static_cast<int64_t>(kPaths));
       const Vec2d uLens = sampler.Get2D();
       const CameraRay camera =

@@ -15,18 +15,18 @@ namespace dapple {
 struct EmissionSample {
   int light = -1;       ///< index in the scene
   double pdfLight = 0;  ///< discrete probability of this light
-  LeSample le;          ///< its densities are those of this sampler, guide included
-  LeRandom own;         ///< the light's own random numbers, before any bend of a guide
-  double bend = 1;      ///< density of `own` in its unit square and square, 1 without a guide
-
+  LeSample le;          ///< with the light's own densities
+  LeRandom own;         ///< the light's own random numbers, after a guide bent them
+  double bend = 1;      ///< density of `own` in the unit cube: 1 without a guide
   /// The flux that one emitted photon stands for: the mean over photons is the scene's emitted power.
-  Color Flux() const { return le.Flux() * static_cast<float>(1 / pdfLight); }
+  Color Flux() const { return le.Flux() * static_cast<float>(1 / (pdfLight * bend)); }
 };
 
 struct EmissionPdf {
   double light = 0;      ///< discrete
   double position = 0;   ///< as LeSample::pdfPos
   double direction = 0;  ///< as LeSample::pdfDir
+  double bend = 1;       ///< of position and direction together: their density is position * direction * bend
 };
 
 class EmissionSampler {

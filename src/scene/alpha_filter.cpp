@@ -17,13 +17,11 @@ uint64_t Bits(float a, float b) {
 bool AlphaFilter::Accepts(const Shape& shape, const PrimitiveHit& hit, const Ray& ray) const {
   TextureContext at(shape.Uv(hit));
   at.p = ray(hit.t);
-  const float alpha = alpha_->Evaluate(at);
-  if (isBinary_) return alpha != 0;
-  if (alpha >= 1) return true;
-  if (!(alpha > 0)) return false;
+  const float coverage = Coverage(*alpha_, at);
+  if (coverage == 0 || coverage == 1) return coverage == 1;
   const uint64_t hash = Hash(Bits(ray.o.x, ray.o.y), Bits(ray.o.z, ray.d.x), Bits(ray.d.y, ray.d.z),
                              Bits(hit.b1, hit.b2), static_cast<uint64_t>(hit.primitive));
-  return static_cast<double>(hash >> 11) * 0x1p-53 < static_cast<double>(alpha);
+  return static_cast<double>(hash >> 11) * 0x1p-53 < static_cast<double>(coverage);
 }
 
 }  // namespace dapple

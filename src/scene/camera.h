@@ -14,6 +14,7 @@
 
 namespace dapple {
 
+/// A ray that leaves the camera.
 struct CameraRay {
   Ray ray;
   /// Footprint of one pixel's step: the width, at distance t along the ray, is about footprintAtLens + t *
@@ -32,6 +33,7 @@ struct WiSample {
   bool isDelta = false;
 };
 
+/// The densities of a ray that leaves the camera.
 struct WePdf {
   double position = 0;   ///< per lens area; 1 for a pinhole (discrete)
   double direction = 0;  ///< per solid angle, for film positions drawn uniformly over the whole image; 1 where discrete
@@ -40,6 +42,7 @@ struct WePdf {
 /// No filter reaches farther (Filter's radii are at most 64 pixels), so no point that lands farther out is joined.
 inline constexpr float kFilmMargin = 64;
 
+/// Immutable and shared by all threads; made for one image resolution.
 class Camera {
  public:
   virtual ~Camera() = default;
@@ -51,6 +54,7 @@ class Camera {
   /// the filter), where throughput ends with the surface's Eval toward wi. Nothing where the camera cannot see `p`.
   /// Cameras without this side (see `CanConnect`) never give anything.
   virtual std::optional<WiSample> Sample_Wi(const Vec3& p, const Vec2d& uLens) const = 0;
+  /// True where `Sample_Wi` works: light paths can be joined to this camera.
   virtual bool CanConnect() const { return true; }
 
   /// Importance carried along a ray that leaves the lens, and its film position; zero outside the image.

@@ -25,6 +25,7 @@ class FilmMapping {
   /// `window` may be turned around (xMin > xMax mirrors, as in pbrt) but not empty.
   FilmMapping(const ScreenWindow& window, const Vec2i& resolution);
 
+  /// Between a film position in pixels and the screen's point; affine, so both work outside the image too.
   Vec2d ToScreen(const Vec2& film) const { return {x0_ + film.x * dx_, y0_ + film.y * dy_}; }
   Vec2 ToFilm(const Vec2d& screen) const {
     return {static_cast<float>((screen.x - x0_) / dx_), static_cast<float>((screen.y - y0_) / dy_)};
@@ -52,6 +53,7 @@ class CameraFrame {
   /// Throws `Error` at `location` where the transform is singular or not affine.
   explicit CameraFrame(const Transform& cameraToRender, const FileLocation& location = {});
 
+  /// From camera space to render space, and back.
   Vec3d Point(const Vec3d& p) const { return cameraToRender_.Point(p); }
   Vec3d Vector(const Vec3d& v) const { return cameraToRender_.Vector(v); }
   Vec3d PointToCamera(const Vec3& p) const { return renderToCamera_.Point(ToDouble(p)); }

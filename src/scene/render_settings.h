@@ -4,12 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "src/base/error.h"
 #include "src/base/vec.h"
 #include "src/image/film.h"
 #include "src/image/filter.h"
 
 namespace dapple {
 
+/// Plain values; what is absent in the file has its default here, or is absent here too.
 struct RenderSettings {
   // Film.
   Vec2i resolution{1280, 720};
@@ -21,6 +23,7 @@ struct RenderSettings {
 
   // Integrator; absent: the integrator's own default.
   std::string integrator;              ///< as the scene names it; may be one that Dapple lacks
+  FileLocation integratorLocation;     ///< where it does
   std::optional<int> samplesPerPixel;  ///< pbrt's sampler
   std::optional<int> iterations;       ///< sppm passes
   std::optional<int> maxDepth;         ///< scattering events on a path

@@ -26,6 +26,7 @@ struct ScenePrimitive {
   std::shared_ptr<const HitFilter> alpha;
 };
 
+/// What a scene is made of, in render space. The camera must be there.
 struct SceneParts {
   std::vector<ScenePrimitive> primitives;
   std::vector<GeometryGroup> groups;
@@ -37,6 +38,7 @@ struct SceneParts {
   Transform renderToWorld;
 };
 
+/// Tracing is safe from any number of threads.
 class Scene {
  public:
   /// Prepares the lights, drops those that emit nothing (so indices into `Lights()` may differ from the parts'), and
@@ -56,16 +58,21 @@ class Scene {
   /// The place in `Lights()` of the light that this surface is; -1 where it emits nothing.
   int AreaLightAt(const SurfaceInteraction& hit) const { return primitives_[static_cast<size_t>(hit.shape)].light; }
 
+  /// Those that emit anything, prepared.
   const std::vector<std::unique_ptr<Light>>& Lights() const { return lights_; }
   /// The places in `Lights()` of those that rays find by leaving the scene.
   const std::vector<int>& InfiniteLights() const { return infiniteLights_; }
+  /// Chooses among `Lights()`, by their places there.
   const LightPicker& Picker() const { return *picker_; }
   const Camera& GetCamera() const { return *camera_; }
   /// Shapes in the order of `SurfaceInteraction::shape`.
   const std::vector<ScenePrimitive>& Primitives() const { return primitives_; }
+  /// What the scene says about its rendering, and what it has.
   const RenderSettings& Settings() const { return settings_; }
   const SceneFacts& Facts() const { return facts_; }
+  /// A sphere around all that can be hit.
   const SceneExtent& Extent() const { return extent_; }
+  /// From render space to the file's world.
   const Transform& RenderToWorld() const { return renderToWorld_; }
 
  private:

@@ -7,6 +7,7 @@
 
 namespace dapple {
 
+/// Counts and bounds, after the lights that emit nothing are dropped.
 struct SceneFacts {
   // Geometry.
   int shapes = 0;
@@ -31,6 +32,7 @@ struct SceneFacts {
   bool hasTransmission = false;
   float minRoughness = 1;  ///< of non-specular surfaces, GGX alpha
 
+  /// False: the image is black.
   bool EmitsLight() const { return lights > 0; }
   /// A specular surface and something that can receive what it throws.
   bool MayHaveCaustics() const { return EmitsLight() && hasSpecular && hasNonSpecular; }

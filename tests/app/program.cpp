@@ -67,19 +67,20 @@ ProgramResult ProgramTest::Run(const std::string& arguments) const {
   return Collect(std::system(Command(arguments).c_str()));
 }
 
-ProgramResult ProgramTest::RunAndSignal(const std::string& arguments, int signal, double delaySeconds) const {
+ProgramResult ProgramTest::RunAndSignal(const std::string& arguments, int signal, const std::string& awaited) const {
   const std::string command = Command(arguments);
   const pid_t child = fork();
   if (child == 0) {
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
   }
-  const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (Read("stderr.txt").empty() && std::chrono::steady_clock::now() < giveUp)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  std::this_thread::sleep_for(std::chrono::duration<double>(delaySeconds));
-  kill(child, signal);
+  const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   int status = 0;
+  while (Read("stderr.txt").find(awaited) == std::string::npos && std::chrono::steady_clock::now() < giveUp) {
+    if (waitpid(child, &status, WNOHANG) == child) return Collect(status);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  kill(child, signal);
   waitpid(child, &status, 0);
   return Collect(status);
 }

@@ -23,8 +23,9 @@ class ProgramTest : public testing::Test {
 
   /// Runs `dapple ARGUMENTS` (as a shell reads them) in the folder.
   ProgramResult Run(const std::string& arguments) const;
-  /// Starts it, sends it the signal `delaySeconds` after its first words on the error stream, and waits for its end.
-  ProgramResult RunAndSignal(const std::string& arguments, int signal, double delaySeconds) const;
+  /// Starts it, sends it the signal once `awaited` stands on its error stream (or it has ended, or 60 s are over), and
+  /// waits for its end.
+  ProgramResult RunAndSignal(const std::string& arguments, int signal, const std::string& awaited) const;
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
   bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }

@@ -94,9 +94,7 @@ TEST(Color, QueriesAndMaps) {
   EXPECT_EQ(Color(1, 5, 3).MaxComponent(), 5);
   EXPECT_EQ(Color(1, 5, 3).Average(), 3);
   EXPECT_FLOAT_EQ(Color(1).Luminance(), 1);
-  EXPECT_EQ(Sqrt(Color(4, -1e-9f, 9)), Color(2, 0, 3));
   EXPECT_EQ(Clamp(Color(-1, 0.5f, 2), 0, 1), Color(0, 0.5f, 1));
-  EXPECT_EQ(Exp(Color(0)), Color(1));
 }
 
 }  // namespace

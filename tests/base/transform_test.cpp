@@ -98,16 +98,6 @@ TEST(Transform, LookAtAlongUpIsSingular) {
   EXPECT_TRUE(Transform::CameraToWorldLookAt({1, 1, 1}, {1, 1, 1}, {0, 1, 0}).IsSingular());
 }
 
-TEST(Transform, PerspectiveMapsTheFrustumToTheSquare) {
-  const double fov = 40, near = 0.1, far = 50;
-  const Transform t = Transform::Perspective(fov, near, far);
-  for (const double z : {near, 1., far}) {
-    const double edge = z * std::tan(Radians(fov / 2));
-    ExpectNear(t.Point({edge, -edge, z}), {1, -1, far * (z - near) / (z * (far - near))}, 1e-12);
-    ExpectNear(t.Inverse().Point(t.Point({edge / 3, edge / 2, z})), {edge / 3, edge / 2, z}, 1e-9);
-  }
-}
-
 TEST(Transform, SingularAndHandedness) {
   EXPECT_TRUE(Transform::Scale({1, 0, 1}).IsSingular());
   EXPECT_TRUE(Transform::Scale({1, std::numeric_limits<double>::infinity(), 1}).IsSingular());

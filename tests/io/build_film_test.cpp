@@ -111,7 +111,25 @@ TEST(BuildFilm, IntegratorsKeepTheirNameAndNumbers) {
   EXPECT_EQ(SettingsOf("Sampler \"zsobol\" \"integer pixelsamples\" 8\nIntegrator \"sppm\"", 4).iterations, 8);
 }
 
+TEST(BuildFilm, IntegratorsHaveTheirPlace) {
+  const RenderSettings settings = SettingsOf("Film \"rgb\"\n Integrator \"bdpt\"", 4);
+  EXPECT_EQ(settings.integratorLocation.line, 2);
+  EXPECT_EQ(settings.integratorLocation.column, 2);
+  EXPECT_FALSE(SettingsOf("", 4).integratorLocation.file);
+}
+
+TEST(BuildFilm, OptionsSetTheSeedAndMisspelledOnesWarn) {
+  EXPECT_EQ(SettingsOf("Option \"integer seed\" 7 Option \"bool disablewavelengthjitter\" true", 4).seed, 7);
+  EXPECT_EQ(WarningsOf("Option \"integer sed\" 7", 4),
+            (std::vector<std::string>{"a.pbrt:1:8: warning: unknown parameter \"sed\"; did you mean \"seed\"?"}));
+  EXPECT_EQ(
+      WarningsOf("Option \"bool disablepixeljitter\" true", 4),
+      (std::vector<std::string>{"a.pbrt:1:8: warning: parameter \"disablepixeljitter\" is not supported and ignored"}));
+}
+
 TEST(BuildFilm, WarnsOfWhatItLacks) {
+  EXPECT_EQ(WarningsOf(R"(Sampler "zsobl" "integer pixelsamples" 3)", 4),
+            (std::vector<std::string>{"a.pbrt:1:1: warning: unknown sampler \"zsobl\"; did you mean \"zsobol\"?"}));
   EXPECT_EQ(WarningsOf(R"(Film "spectral")", 4),
             (std::vector<std::string>{"a.pbrt:1:1: warning: film \"spectral\" is not supported; \"rgb\" is used"}));
   EXPECT_EQ(WarningsOf(R"(Film "image" "float maxsampleluminance" [4])", 3),
@@ -135,6 +153,8 @@ TEST(BuildFilm, ErrorsHaveAPlace) {
   EXPECT_EQ(ErrorOf(R"(PixelFilter "box" "float xradius" -1)", 4).substr(0, 17), "a.pbrt:1:1: error");
   EXPECT_EQ(ErrorOf(R"(Integrator "sppm" "float radius" 0)", 4).substr(0, 18), "a.pbrt:1:19: error");
   EXPECT_EQ(ErrorOf(R"(Sampler "zsobol" "integer pixelsamples" 0)", 4).substr(0, 18), "a.pbrt:1:18: error");
+  EXPECT_EQ(ErrorOf(R"(Sampler "stratified" "integer xsamples" 65536 "integer ysamples" 65536)", 4),
+            "a.pbrt:1:22: error: \"xsamples\" times \"ysamples\" is 4294967296, expected at most 2147483647");
 }
 
 }  // namespace

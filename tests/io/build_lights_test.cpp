@@ -152,6 +152,36 @@ TEST(BuildLights, BadPixelsOfAMapAreMendedWithAWarning) {
   EXPECT_EQ(built.warnings[0].substr(0, 21), "a.pbrt:5:24: warning:");
 }
 
+TEST(BuildLights, AnInfinitePixelIsAsBrightAsTheBrightestOther) {
+  const TestFolder folder;
+  Image image = Image::Rgb(16, 8);
+  image.SetColor(9, 5, Color(500));
+  image.SetColor(3, 2, Color(500));
+  WriteExr((folder.Path() / "good.exr").string(), image);
+  image.SetColor(3, 2, Color(INFINITY));
+  WriteExr((folder.Path() / "overflown.exr").string(), image);
+  const auto lit = [&](const std::string& file) {
+    return Lit("LightSource \"infinite\" \"string mapname\" \"" + file + "\"", 3, folder.Path());
+  };
+  const Built good = lit("good.exr"), overflown = lit("overflown.exr");
+  EXPECT_EQ(good.warnings.size(), 0u);
+  ASSERT_EQ(overflown.warnings.size(), 1u);
+  EXPECT_EQ(overflown.warnings[0].substr(0, 21), "a.pbrt:5:24: warning:");
+  EXPECT_EQ(overflown->Lights()[0]->Power(), good->Lights()[0]->Power());
+}
+
+// The same texture: in pbrt-v3 a hole is where it is 0, in pbrt-v4 a half is there half of the time.
+TEST(BuildLights, AlphaOfAnAreaLightIsThatOfTheVersion) {
+  const std::string world = R"(Texture "half" "float" "checkerboard" "float uscale" [2] "float vscale" [2]
+      "float tex1" [0.5] "float tex2" [0]
+      AttributeBegin AreaLightSource "diffuse" "rgb L" [4 4 4] Shape "sphere" "texture alpha" "half" AttributeEnd)";
+  for (const int version : {3, 4}) {
+    const double whole = 4 * kPiD * 4 * kPiD;
+    ExpectColor(Lit(world, version)->Lights()[0]->Power(),
+                Color(static_cast<float>(whole * (version == 3 ? 0.5 : 0.25))), 0.01);
+  }
+}
+
 TEST(BuildLights, AreaLightsGlowOnTheirOutside) {
   const Built v3 =
       Lit(R"(AttributeBegin AreaLightSource "area" "rgb L" [1 2 3] "rgb scale" [2 2 2] "integer nsamples" [4]

@@ -35,11 +35,11 @@ TEST(Parameters, OneValueOfEachType) {
   EXPECT_TRUE(list.GetBool("b", false));
   EXPECT_FALSE(list.GetBool("c", true));
   EXPECT_EQ(list.GetString("s", ""), "x y");
-  EXPECT_EQ(list.GetPoint2("p", {}), Vec2d(1, 2));
-  EXPECT_EQ(list.GetVector2("v", {}), Vec2d(3, 4));
+  EXPECT_EQ(list.GetPoint2Array("p", 1), (std::vector<Vec2>{{1, 2}}));
+  EXPECT_EQ(list.Find("v", ParameterType::Vector2)->numbers, (std::vector<double>{3, 4}));
   EXPECT_EQ(list.GetPoint3("q", {}), Vec3d(1, 2, 3));
   EXPECT_EQ(list.GetVector3("w", {}), Vec3d(4, 5, 6));
-  EXPECT_EQ(list.GetNormal("n", {}), Vec3d(7, 8, 9));
+  EXPECT_EQ(list.GetNormalArray("n", 1), (std::vector<Vec3>{{7, 8, 9}}));
 }
 
 TEST(Parameters, FallbacksWhereAbsent) {

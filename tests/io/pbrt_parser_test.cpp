@@ -304,8 +304,9 @@ TEST(PbrtParser, OpenBlocksAtTheEnd) {
   EXPECT_EQ(WarningsOf("WorldBegin AttributeBegin\n TransformBegin WorldEnd"),
             (std::vector<std::string>{"a.pbrt:1:12: warning: AttributeBegin without AttributeEnd",
                                       "a.pbrt:2:2: warning: TransformBegin without TransformEnd"}));
-  EXPECT_EQ(ErrorOf("Camera \"perspective\""), "a.pbrt:1:1: error: the scene has no WorldBegin");
-  EXPECT_EQ(ErrorOf(""), "error: the scene has no WorldBegin");
+  EXPECT_EQ(ErrorOf("Camera \"perspective\""),
+            "a.pbrt:1:1: error: the scene has no WorldBegin, expected one before its shapes and lights");
+  EXPECT_EQ(ErrorOf(""), "a.pbrt: error: the scene has no WorldBegin, expected one before its shapes and lights");
   EXPECT_EQ(ErrorOf("\nWorldBegin", 3),
             "a.pbrt:2:1: error: WorldBegin without WorldEnd, which pbrt-v3 files have at their end");
 }

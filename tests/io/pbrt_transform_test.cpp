@@ -1,4 +1,5 @@
 // The transform statements, against matrices worked out by hand.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "src/base/numerics.h"
@@ -45,6 +46,26 @@ TEST(PbrtTransform, MatricesStandColumnByColumn) {
   ExpectNear(After("Scale 2 2 2 ConcatTransform " + matrix).Point({0, 1, 0}), {30, 34, 38});
   ExpectNear(After("Scale 2 2 2 Transform " + matrix).Point({0, 1, 0}), {15, 17, 19});
   ExpectNear(After("Transform 1 2 3 0  4 5 6 0  7 8 10 0  11 12 13 1").Point({0, 0, 0}), {11, 12, 13});
+}
+
+TEST(PbrtTransform, OfAMatrixTheLastNumberDividesTheOthers) {
+  const Transform halved = After("Transform [2 0 0 0  0 4 0 0  0 0 6 0  8 10 12 2]");
+  ExpectNear(halved.Point({1, 1, 1}), {5, 7, 9});
+  ExpectNear(halved.Vector({1, 1, 1}), {1, 2, 3});
+}
+
+TEST(PbrtTransform, OfAProjectionTheAffinePartRemains) {
+  for (const char* directive : {"Transform", "ConcatTransform"}) {
+    WarningList warnings;
+    const SceneDescription scene =
+        Parse(fmt::format("WorldBegin\n{} [2 0 0 0.5  0 1 0 0  0 0 1 1  3 0 0 1] Shape \"sphere\"", directive),
+              warnings.diagnostics);
+    ASSERT_EQ(warnings.lines.size(), 1u);
+    EXPECT_EQ(warnings.lines[0],
+              "a.pbrt:2:1: warning: projections are not supported: the matrix's last row is 0.5 0 1 1, expected 0 0 0 "
+              "1; its first three numbers are ignored");
+    ExpectNear(scene.shapes.at(0).worldFromShape.Point({1, 1, 1}), {5, 1, 1});
+  }
 }
 
 TEST(PbrtTransform, IdentityForgets) { EXPECT_TRUE(After("Translate 1 2 3 Identity").IsIdentity()); }

@@ -100,30 +100,6 @@ TEST(ParseNumber, RefusesOtherSpellings) {
     Parse(text, NumberStatus::Malformed);
 }
 
-TEST(ParseNumbers, ReadsPairsAndComments) {
-  EXPECT_EQ(ParseNumbers("# Au\n400 1.5\n\t500,-2e1 # half\r\n600 3", "a.spd"),
-            (std::vector<double>{400, 1.5, 500, -20, 600, 3}));
-  EXPECT_TRUE(ParseNumbers("", "a.spd").empty());
-  EXPECT_TRUE(ParseNumbers("# only this", "a.spd").empty());
-  EXPECT_EQ(ParseNumbers("1#2", "a.spd"), std::vector<double>{1});
-}
-
-TEST(ParseNumbers, ErrorsNameLineAndColumn) {
-  EXPECT_EQ(MessageOf([] { ParseNumbers("1 2\n# c\n  3 x4 5", "a.spd"); }),
-            "a.spd:3:5: error: expected a finite number, found \"x4\"");
-  EXPECT_EQ(MessageOf([] { ParseNumbers("1e999", "a.spd"); }),
-            "a.spd:1:1: error: expected a finite number, found \"1e999\"");
-  EXPECT_EQ(MessageOf([] { ParseNumbers("1 2;3", "a.spd"); }),
-            "a.spd:1:3: error: expected a finite number, found \"2;3\"");
-  EXPECT_EQ(MessageOf([] { ParseNumbers("nan", "a.spd"); }),
-            "a.spd:1:1: error: expected a finite number, found \"nan\"");
-}
-
-TEST(ReadNumberFile, ReadsGzipToo) {
-  const TestFolder folder;
-  EXPECT_EQ(ReadNumberFile(folder.Write("numbers.gz", Gzip("1 2\n3 4"))), (std::vector<double>{1, 2, 3, 4}));
-}
-
 TEST(Quoted, ShowsAnyBytes) {
   EXPECT_EQ(Quoted("abc"), "\"abc\"");
   EXPECT_EQ(Quoted(std::string_view("a\0\xff", 3)), "\"a\\x00\\xff\"");

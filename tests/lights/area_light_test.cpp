@@ -18,7 +18,7 @@ double Irradiance(const Light& light, const LightContext& at, int samples, doubl
   Mean mean;
   for (int i = 0; i < samples; ++i) {
     const std::optional<LiSample> sample = light.Sample_Li(at, random.Li());
-    mean.Add(sample ? static_cast<double>(sample->L.r) * std::max(0.0, Dot(ToDouble(sample->wi), ToDouble(at.ns))) /
+    mean.Add(sample ? static_cast<double>(sample->L.r) * std::max(0.0, Dot(ToDouble(sample->wi), ToDouble(at.n))) /
                           sample->pdf
                     : 0);
   }
@@ -93,6 +93,42 @@ TEST(AreaLight, TexturesAndHolesCountInThePower) {
     const std::optional<LeSample> sample = half.Sample_Le(random.Le());
     if (sample) {
       ASSERT_GE(sample->ray.o.x, 0.499f);
+    }
+  }
+}
+
+class RampAlpha final : public FloatTexture {
+ public:
+  float Evaluate(const TextureContext& at) const override { return 1.5f * at.uv.x; }  // cut to 1 beyond 2/3
+};
+
+// Rays meet the light with probability alpha and then see all of its radiance; so what leaves it has the share alpha.
+TEST(AreaLight, WhatLeavesTheLightHasItsAlpha) {
+  const Sphere sphere(Transform::Translate({0, 0, 2}), false, 0.5);
+  const BilinearMesh square({{0, 0, 2}, {0, 1, 2}, {1, 0, 2}, {1, 1, 2}}, {}, {}, {0, 1, 2, 3});  // u is y
+  const auto L = std::make_shared<ConstantTexture<Color>>(Color(4));
+  const AreaLight ball(&sphere, L, false, std::make_shared<ConstantTexture<float>>(0.25f));
+  const AreaLight ramp(&square, L, true, std::make_shared<RampAlpha>());
+  EXPECT_NEAR(ball.Power().g / (kPiD * ball.Area()), 0.25 * 4, 1e-5);
+  EXPECT_NEAR(ramp.Power().g / (2 * kPiD), (1. / 3 + 1. / 3) * 4, 2e-3);
+  for (const AreaLight* light : {&ball, &ramp}) {
+    const Shape& shape = light == &ball ? static_cast<const Shape&>(sphere) : square;
+    RandomNumbers random(3);
+    Mean flux;
+    for (int i = 0; i < 20000; ++i) {
+      const std::optional<LeSample> sample = light->Sample_Le(random.Le());
+      flux.Add(sample ? static_cast<double>(sample->Flux().g) : 0);
+    }
+    const double power = static_cast<double>(light->Power().g);
+    EXPECT_NEAR(flux.Value(), power, 5 * flux.StandardError() + 1e-3 * power);
+    for (int i = 0; i < 100; ++i) {
+      const std::optional<LiSample> sample = light->Sample_Li(LightContext(Vec3(0)), random.Li());
+      ASSERT_TRUE(sample);
+      const std::optional<SurfaceInteraction> hit = FirstHit(shape, Ray{Vec3(0), sample->wi});
+      if (!hit) continue;  // past the rim
+      const float coverage = light == &ball ? 0.25f : std::min(1.f, 1.5f * hit->uv.x);
+      EXPECT_NEAR(sample->L.g, 4 * coverage, 1e-4);
+      EXPECT_EQ(light->L(*hit, -sample->wi), Color(4));
     }
   }
 }

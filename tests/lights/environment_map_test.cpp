@@ -226,7 +226,7 @@ TEST(EnvironmentMap, RepairsWhatIsNoRadiance) {
   image.SetColor(1, 0, Color(kInfinity, 7, -kInfinity));
   image.SetColor(0, 1, Color(1, 2, 3));
   int64_t repaired = 0;
-  const Image result = EnvironmentLight::RepairEnvironment(image, &repaired);
+  const Image result = EnvironmentMap::Repair(image, &repaired);
   EXPECT_EQ(repaired, 2);
   EXPECT_EQ(result.ColorAt(0, 0), Color(1, 0, 0));
   EXPECT_EQ(result.ColorAt(1, 0), Color(7, 7, 0));

@@ -150,7 +150,10 @@ TEST(SpectrumToColor, ConstantIsTintedInV3AndGrayInV4) {
 TEST(SpectrumToColor, IsLinear) {
   const std::vector<double> wavelengths = {400, 500, 600, 700};
   const std::vector<double> a = {0.1, 0.9, 0.2, 0.5}, b = {1, 0, 2, 1}, sum = {1.1, 0.9, 2.2, 1.5};
-  ExpectNear(SampledToColor(wavelengths, a) + SampledToColor(wavelengths, b), SampledToColor(wavelengths, sum), 1e-5f);
+  const auto color = [&](const std::vector<double>& values) {
+    return SpectrumToColorV3(Spectrum(wavelengths, values, Spectrum::Outside::kConstant));
+  };
+  ExpectNear(color(a) + color(b), color(sum), 1e-5f);
 }
 
 TEST(Spectrum, InterpolatesAndEndsAsAsked) {

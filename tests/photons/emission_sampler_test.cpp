@@ -76,13 +76,13 @@ TEST_P(Emission, DensityOfASampleIsWhatPdfSays) {
     ASSERT_TRUE(photon);
     const EmissionPdf pdf = emission_.Pdf(photon->light, photon->le.ray, photon->le.n);
     EXPECT_DOUBLE_EQ(pdf.light, photon->pdfLight);
-    const double sampled = photon->le.pdfPos * photon->le.pdfDir;
+    const double sampled = photon->le.pdfPos * photon->le.pdfDir * photon->bend;
     // A guide's cell is found from the ray in float: at the border of two cells it may be the neighbour.
     const double own = photon->own.direction.x * 64, other = photon->own.direction.y * 64;
     const double x = photon->own.position.x * 64, y = photon->own.position.y * 64;
     const auto nearBorder = [](double c) { return std::abs(c - std::round(c)) < 0.05; };
     if (GetParam() && (nearBorder(own) || nearBorder(other) || nearBorder(x) || nearBorder(y))) continue;
-    EXPECT_NEAR(pdf.position * pdf.direction / sampled, 1, 1e-4) << "light " << photon->light;
+    EXPECT_NEAR(pdf.position * pdf.direction * pdf.bend / sampled, 1, 1e-4) << "light " << photon->light;
   }
 }
 

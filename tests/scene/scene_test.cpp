@@ -204,8 +204,8 @@ TEST(SceneFacts, DimLightsDoNotCountAsTheSmallest) {
 
 TEST(AlphaFilter, CutsHolesWithTheTexturesProbability) {
   const Sphere shape(Transform(), false, 1);
-  const AlphaFilter half(MakeConstant(0.3f), false), v3(MakeConstant(0.3f), true);
-  const AlphaFilter none(MakeConstant(0.f), true);
+  const AlphaFilter half(MakeConstant(0.3f)), v3(std::make_shared<BinaryAlpha>(MakeConstant(0.3f)));
+  const AlphaFilter none(std::make_shared<BinaryAlpha>(MakeConstant(0.f)));
   constexpr int kCount = 20'000;
   int accepted = 0;
   for (int i = 0; i < kCount; ++i) {
@@ -219,6 +219,33 @@ TEST(AlphaFilter, CutsHolesWithTheTexturesProbability) {
   }
   // Binomial, five standard deviations: two-sided significance 6e-7.
   EXPECT_NEAR(accepted, 0.3 * kCount, 5 * std::sqrt(kCount * 0.3 * 0.7));
+}
+
+TEST(AlphaFilter, LightIsAsBrightSeenAsSampled) {
+  for (const bool isV3 : {false, true}) {
+    FloatTexturePtr alpha = MakeConstant(0.3f);
+    if (isV3) alpha = std::make_shared<BinaryAlpha>(alpha);
+    Builder b;
+    b.Ball({0, 0, 3}, 1, b.Matte(0.5f), 2);
+    b.parts.primitives[0].alpha = std::make_shared<AlphaFilter>(alpha);
+    b.parts.lights[0] =
+        std::make_unique<AreaLight>(b.parts.primitives[0].shape.get(), MakeConstant(Color(2)), false, alpha);
+    const Scene scene = b.Make();
+    const Light& light = *scene.Lights()[0];
+    double seen = 0, sampled = 0;
+    constexpr int kSide = 128, kCount = kSide * kSide;
+    for (int i = 0; i < kCount; ++i) {
+      const LiRandom u{0.5, {(i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide}};
+      const std::optional<LiSample> sample = light.Sample_Li(LightContext(Vec3(0)), u);
+      ASSERT_TRUE(sample);
+      sampled += static_cast<double>(sample->L.g);
+      const Ray ray{Vec3(0), sample->wi, kInfinity, {}};
+      if (const auto hit = scene.Intersect(ray)) seen += static_cast<double>(light.L(*hit, -ray.d).g);
+    }
+    // Binomial, five standard deviations.
+    EXPECT_NEAR(seen / sampled, 1, 5 * std::sqrt(0.7 / 0.3 / kCount));
+    EXPECT_NEAR(sampled / kCount, isV3 ? 2 : 0.6, 1e-4);
+  }
 }
 
 }  // namespace

@@ -75,12 +75,13 @@ class AllIntegratorsAgree : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(AllIntegratorsAgree, BlockByBlock) {
   const Scene scene(PartsOf(GetParam()));
-  constexpr int kPasses = 128;
+  constexpr int kPasses = 64;
   const GroupedImages sppm = SppmAtRadiusZero(scene, kPasses);
   const auto expectAgreement = [](const std::string& what, const BlockReport& report) {
     std::cout << what << ": " << report.text << "\n";
     EXPECT_GT(report.blocks, 0) << what;
     EXPECT_LE(report.worstExcess, 0) << what << ": " << report.text;
+    EXPECT_LT(report.medianSigma, 0.01) << what << ": too noisy to say anything";
   };
   if (PathSeesAll(scene.Facts())) {
     const GroupedImages path = RenderGroups(scene, "path", Options(), 4 * kPasses, kGroups, 1);
@@ -139,7 +140,8 @@ class BrighterLight final : public Light {
   float factor_;
 };
 
-// The check above must be able to fail: two percent more from one light are found.
+// The check above must be able to fail: two percent more in one light's emission alone, or in both of its sides, are
+// found in most blocks; the same renders without the fault pass.
 TEST(AllIntegratorsAgree, TwoPercentMoreFromOneLightAreRejected) {
   const std::string name = "box";
   const Scene scene(PartsOf(name));
@@ -147,11 +149,21 @@ TEST(AllIntegratorsAgree, TwoPercentMoreFromOneLightAreRejected) {
   faulty.lights[0] = std::make_unique<BrighterLight>(std::move(faulty.lights[0]), 1.02f);
   const Scene faultyScene(std::move(faulty));
   constexpr int kPasses = 256;
-  const GroupedImages path = RenderGroups(scene, "path", Options(), kPasses, kGroups, 1);
-  const GroupedImages faultyPath = RenderGroups(faultyScene, "path", Options(), kPasses, kGroups, 2);
+  const std::vector<bool> specular = PixelsOnSpecularSurfaces(scene);
+  const auto compare = [&](const GroupedImages& a, const GroupedImages& b) {
+    const BlockReport report = CompareBlocks(a, b, kBlockSize, kTolerance, specular);
+    std::cout << report.text << "\n";
+    return report;
+  };
+  const GroupedImages path = RenderGroups(scene, "path", Options(), 4 * kPasses, kGroups, 1);
+  const GroupedImages light = RenderGroups(scene, "light_tracing", Options(), kPasses, kGroups, 2);
+  const GroupedImages faultyPath = RenderGroups(faultyScene, "path", Options(), 4 * kPasses, kGroups, 2);
   const GroupedImages faultyLight = RenderGroups(faultyScene, "light_tracing", Options(), kPasses, kGroups, 2);
-  EXPECT_GT(CompareBlocks(faultyPath, path, kBlockSize, kTolerance).worstExcess, 0);
-  EXPECT_GT(CompareBlocks(faultyLight, path, kBlockSize, kTolerance, PixelsOnSpecularSurfaces(scene)).worstExcess, 0);
+  EXPECT_LE(compare(light, path).worstExcess, 0);
+  for (const GroupedImages* faultyImages : {&faultyPath, &faultyLight}) {
+    const BlockReport report = compare(*faultyImages, path);
+    EXPECT_GT(2 * report.failed, report.blocks);
+  }
 }
 
 // The flux in a caustic: the sum of the pixels of a region around it, by photons and by light tracing.
@@ -162,12 +174,13 @@ TEST_P(CausticFlux, SppmAndLightTracingAgree) {
   constexpr int kSppmPasses = 32;
   const Image sppm = RenderGroups(scene, "sppm", Options(), kSppmPasses, 1, 5).Mean();
   const Image light = RenderGroups(scene, "light_tracing", Options(), 4 * kSppmPasses, 1, 6).Mean();
+  const Image region = RenderGroups(scene, "light_tracing", Options(), kSppmPasses, 1, 7).Mean();
   const std::vector<bool> specular = PixelsOnSpecularSurfaces(scene);
 
-  // The caustic: pixels that light tracing finds over four times as bright as the middle one of the picture.
+  // The caustic: pixels that light tracing, with another seed, finds over four times as bright as the middle one.
   std::vector<float> brightness;
   for (int y = 0; y < light.Height(); ++y)
-    for (int x = 0; x < light.Width(); ++x) brightness.push_back(light.ColorAt(x, y).Luminance());
+    for (int x = 0; x < light.Width(); ++x) brightness.push_back(region.ColorAt(x, y).Luminance());
   std::vector<float> sorted = brightness;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<int64_t>(sorted.size() / 2), sorted.end());
   const float threshold = 4 * sorted[sorted.size() / 2];

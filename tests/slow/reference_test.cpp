@@ -3,6 +3,7 @@
 // Runs where the environment names the folder of references (DAPPLE_REFERENCES); its README tells how they were made.
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,9 +17,10 @@ namespace {
 
 using namespace testing_support;
 
+/// Empty where there is none.
 std::string ReferenceFolder() {
   const char* folder = std::getenv("DAPPLE_REFERENCES");
-  return folder ? folder : "";
+  return folder && std::filesystem::is_directory(folder) ? folder : "";
 }
 
 std::unique_ptr<Scene> Load(const std::string& file) {
@@ -39,7 +41,14 @@ struct Case {
   std::string integrator;
   int passes;
   int blockSize = 32;
+  double tolerance = 0.02;
+  double floor = 0;  // absolute error of the reference itself
 };
+
+// At the foot of the ring the reference (another renderer's photon map) has light that leaked under the wall: its
+// darkest blocks are up to 0.00055 too bright. Path tracing, which leaks nothing, and sppm at ever smaller radii agree
+// on that.
+constexpr double kRingLeak = 0.0006;
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.scene << " " << c.integrator; }
 
@@ -59,6 +68,7 @@ class Reference : public ::testing::TestWithParam<Case> {
 
 constexpr int kGroups = 8;
 constexpr double kMeanTolerance = 0.01, kBlockTolerance = 0.02;
+constexpr double kMaxMedianSigma = 0.01;
 
 class BlockMeansAgree : public Reference {};
 
@@ -67,21 +77,26 @@ TEST_P(BlockMeansAgree, WithinTwoPercentAndThreeSigma) {
   const auto scene = Load(c.scene + ".pbrt");
   const GroupedImages images = RenderGroups(*scene, c.integrator, OptionsOf(*scene), c.passes, kGroups);
   const GroupedImages reference = Exact(ReadImage(ReferenceFolder() + "/" + c.reference + ".exr"));
-  const BlockReport report = CompareBlocks(images, reference, c.blockSize, kBlockTolerance);
-  RecordProperty("report", report.text);
+  const BlockReport report = CompareBlocks(images, reference, c.blockSize, c.tolerance, {}, c.floor);
   std::cout << report.text << "\n";
   EXPECT_NEAR(report.meanRatio, 1, kMeanTolerance);
   EXPECT_LE(report.worstExcess, 0) << report.text;
+  EXPECT_LT(report.medianSigma, kMaxMedianSigma) << "too noisy to say anything";
 }
 
-INSTANTIATE_TEST_SUITE_P(V3, BlockMeansAgree,
-                         ::testing::Values(Case{"cbox-v3", "cbox", "path", 256}, Case{"ring-v3", "ring", "path", 512},
-                                           Case{"envglass-v3", "envglass", "path", 128},
-                                           Case{"veach-v3", "veach", "path", 128}, Case{"cbox-v3", "cbox", "sppm", 128},
-                                           Case{"ring-v3", "ring", "sppm", 128}, Case{"lens-v3", "lens", "sppm", 128},
-                                           Case{"envglass-v3", "envglass", "sppm", 128}),
+INSTANTIATE_TEST_SUITE_P(
+    V3, BlockMeansAgree,
+    ::testing::Values(Case{"cbox-v3", "cbox", "path", 256}, Case{"ring-v3", "ring", "path", 512, 32, 0.02, kRingLeak},
+                      Case{"envglass-v3", "envglass", "path", 128}, Case{"veach-v3", "veach", "path", 128},
+                      Case{"cbox-v3", "cbox", "sppm", 128}, Case{"ring-v3", "ring", "sppm", 128, 32, 0.02, kRingLeak},
+                      Case{"lens-v3", "lens", "sppm", 128}, Case{"envglass-v3", "envglass", "sppm", 128}),
+    NameOf);
+// The square map of envglass-v4 is resampled: single blocks may differ by 3 %, as the references' README says.
+INSTANTIATE_TEST_SUITE_P(V4, BlockMeansAgree,
+                         ::testing::Values(Case{"veach-v4", "veach", "path", 128},
+                                           Case{"envglass-v4", "envglass", "path", 128, 32, 0.03},
+                                           Case{"envglass-v4", "envglass", "sppm", 128, 32, 0.03}),
                          NameOf);
-INSTANTIATE_TEST_SUITE_P(V4, BlockMeansAgree, ::testing::Values(Case{"veach-v4", "veach", "path", 128}), NameOf);
 INSTANTIATE_TEST_SUITE_P(OthersScenes, BlockMeansAgree,
                          ::testing::Values(Case{"../data/killeroo-simple", "../data/killeroo-simple", "path", 128, 16},
                                            Case{"../data/gold-teapot", "../data/gold-teapot", "path", 128, 16}),

@@ -79,9 +79,10 @@ bool AnySkipped(const std::vector<bool>& skip, int width, int height, int blockX
 }  // namespace
 
 BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
-                          const std::vector<bool>& skip) {
+                          const std::vector<bool>& skip, double floor) {
   BlockReport report;
   std::string failures;
+  std::vector<double> sigmas;
   report.meanRatio = CompareImages(test.Mean(), reference.Mean()).meanRatio;
   const BlockStatistics t = Statistics(test, blockSize), r = Statistics(reference, blockSize);
   const int width = test.groups.front().Width(), height = test.groups.front().Height();
@@ -94,7 +95,8 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
         if (skipped) continue;
         const double expected = r.mean.At(x, y, c), got = t.mean.At(x, y, c);
         const double sigma = std::sqrt(t.variance[entry] + r.variance[entry]);
-        const double excess = std::abs(got - expected) - tolerance * expected - 3 * sigma;
+        const double excess = std::abs(got - expected) - std::max(tolerance * expected, floor) - 3 * sigma;
+        if (expected > 0) sigmas.push_back(sigma / expected);
         blockFailed |= excess > 0;
         constexpr int kListed = 12;
         if (excess > 0 && std::count(failures.begin(), failures.end(), '\n') < kListed)
@@ -111,8 +113,13 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
       ++report.blocks;
       report.failed += blockFailed;
     }
-  report.text = fmt::format("mean ratio {:.5f}, {} of {} blocks fail; worst {}{}", report.meanRatio, report.failed,
-                            report.blocks, report.text, failures);
+  if (!sigmas.empty()) {
+    std::nth_element(sigmas.begin(), sigmas.begin() + static_cast<int64_t>(sigmas.size() / 2), sigmas.end());
+    report.medianSigma = sigmas[sigmas.size() / 2];
+  }
+  report.text =
+      fmt::format("mean ratio {:.5f}, {} of {} blocks fail, median sigma {:.2f} %; worst {}{}", report.meanRatio,
+                  report.failed, report.blocks, 100 * report.medianSigma, report.text, failures);
   return report;
 }
 

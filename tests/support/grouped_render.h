@@ -33,14 +33,16 @@ struct BlockReport {
   double meanRatio = 1;        ///< of the whole images
   double worstExcess = -1;     ///< largest (|t - r| - tolerance r - 3 sigma) / (r + floor) over blocks and channels
   int blocks = 0, failed = 0;  ///< how many were compared; how many of them have a positive excess in any channel
+  double medianSigma = 0;      ///< relative, over blocks and channels: a noisy picture agrees with anything
   Vec2i worstBlock;
   std::string text;  ///< the worst block in words
 };
 
 /// Compares the means of blocks of blockSize^2 pixels. Sigma is the standard error of the block's mean over the groups
-/// of both sides. `skip`, where not empty, is one flag a pixel: blocks with any flagged pixel are left out.
+/// of both sides. `skip`, where not empty, is one flag a pixel: blocks with any flagged pixel are left out. `floor` is
+/// a difference that is allowed in any block, for references with an error of their own.
 BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
-                          const std::vector<bool>& skip = {});
+                          const std::vector<bool>& skip = {}, double floor = 0);
 
 /// A reference image without an error bar of its own.
 inline GroupedImages Exact(Image image) { return {{std::move(image)}}; }
