@@ -13,8 +13,10 @@ PixelSample SamplePixel(const Scene& scene, const Film& film, const Vec2i& pixel
 }
 
 LightContext ContextOf(const SurfaceInteraction& hit, const Bsdf& bsdf) {
-  // The geometric normal: it is what decides, in the BSDF too, from which side light counts.
-  return {hit.p, FaceForward(bsdf.GeometricNormal(), hit.wo), bsdf.Flags().HasTransmission()};
+  // The geometric normal: it is what decides, in the BSDF too, from which side light counts. The point is moved off the
+  // surface to that side, so that the inside of a lamp is inside, however the point was rounded.
+  const Vec3 n = FaceForward(bsdf.GeometricNormal(), hit.wo);
+  return {OffsetOrigin(hit.p, hit.pError, hit.ng, n), n, bsdf.Flags().HasTransmission()};
 }
 
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last) {

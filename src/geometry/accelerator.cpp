@@ -266,6 +266,7 @@ struct Accelerator::State {
   SceneHandle BuildScene(const std::vector<int>& members);
   void BuildGroups();
   void BuildTop();
+  void CheckInstanceScales() const;
   SurfaceInteraction Interact(const Ray& ray, const RTCRayHit& found) const;
 };
 
@@ -308,6 +309,27 @@ void Accelerator::State::BuildTop() {
   }
   rtcCommitScene(scene.get());
   device.Check();
+  CheckInstanceScales();
+}
+
+// Embree takes rays into an instance's space in float and stops the program where they leave its range: instances so
+// thin that rays of this scene would are refused.
+void Accelerator::State::CheckInstanceScales() const {
+  constexpr double kMaxReach = 1e16;
+  RTCBounds box;
+  rtcGetSceneBounds(scene.get(), &box);
+  const double reach = std::max({std::abs(box.lower_x), std::abs(box.lower_y), std::abs(box.lower_z),
+                                 std::abs(box.upper_x), std::abs(box.upper_y), std::abs(box.upper_z)});
+  for (const int i : topInstances) {
+    const Transform inverse = instances[i].groupToRender.Inverse();
+    for (int row = 0; row < 3; ++row) {
+      double extent = std::abs(inverse.At(row, 3));
+      for (int column = 0; column < 3; ++column) extent += std::abs(inverse.At(row, column)) * reach;
+      if (!(extent < kMaxReach))
+        throw Error(fmt::format("instance {}: its transform flattens too much; expected scales above {:.1g}", i,
+                                reach / kMaxReach));
+    }
+  }
 }
 
 Accelerator::Accelerator(std::vector<GeometryEntry> shapes, std::vector<GeometryGroup> groups,
@@ -340,7 +362,18 @@ SurfaceInteraction Accelerator::State::Interact(const Ray& ray, const RTCRayHit&
   return interaction;
 }
 
+namespace {
+
+/// Embree's own limit: it stops the program at rays beyond. They hit nothing.
+bool IsTraceable(const Ray& ray) {
+  constexpr float kLargest = 1.8e18f;
+  return MaxAbsComponent(ray.o) < kLargest && MaxAbsComponent(ray.d) < kLargest && ray.tMax > 0;
+}
+
+}  // namespace
+
 std::optional<SurfaceInteraction> Accelerator::Intersect(const Ray& ray) const {
+  if (!IsTraceable(ray)) return std::nullopt;
   Context context(ray);
   RTCRayHit found{};
   found.ray = {ray.o.x, ray.o.y, ray.o.z, kNearest, ray.d.x, ray.d.y, ray.d.z, 0, ray.tMax, ~0u, 0, 0};
@@ -352,6 +385,7 @@ std::optional<SurfaceInteraction> Accelerator::Intersect(const Ray& ray) const {
 }
 
 bool Accelerator::Occluded(const Ray& ray) const {
+  if (!IsTraceable(ray)) return false;
   Context context(ray);
   RTCRay shadow = {ray.o.x, ray.o.y, ray.o.z, kNearest, ray.d.x, ray.d.y, ray.d.z, 0, ray.tMax, ~0u, 0, 0};
   rtcOccluded1(state_->scene.get(), &context.embree, &shadow);

@@ -139,6 +139,16 @@ TEST(SphereLight, IrradianceStraightBelow) {
     ExpectRadiance(MeanRadiance(scene, integrator, 64, options), exact, 1e-4);
 }
 
+// A sphere that shines to its outside only is dark inside, though all of its points are next to shining ones.
+TEST(SphereLight, IsDarkInside) {
+  const std::string scene =
+      Header("100 0 0  101 .3 .2  0 1 0", 60) +
+      "Translate 100 0 0 Material \"matte\" \"rgb Kd\" [.8 .8 .8] "
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape \"sphere\" \"float radius\" [3] WorldEnd";
+  for (const char* integrator : {"path", "light_tracing", "sppm"})
+    EXPECT_EQ(MeanRadiance(scene, integrator, 32).mean, 0) << integrator;
+}
+
 // Light through a pane of glass at right angles: a diffuse floor far below a distant light sees what the pane lets
 // pass, 2 F / (1 + F) less, with F = ((n - 1) / (n + 1))^2; photons and light tracing only (no path finds a distant
 // light).

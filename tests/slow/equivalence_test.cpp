@@ -57,7 +57,7 @@ std::vector<bool> PixelsOnSpecularSurfaces(const Scene& scene) {
 
 IntegratorOptions Options(double radiusInPixels = 1) {
   IntegratorOptions options;
-  options.photonsPerPass = 200000;
+  options.photonsPerPass = 100000;
   options.radiusInPixels = radiusInPixels;
   return options;
 }
@@ -84,7 +84,7 @@ TEST_P(AllIntegratorsAgree, BlockByBlock) {
     EXPECT_LT(report.medianSigma, 0.01) << what << ": too noisy to say anything";
   };
   if (PathSeesAll(scene.Facts())) {
-    const GroupedImages path = RenderGroups(scene, "path", Options(), 4 * kPasses, kGroups, 1);
+    const GroupedImages path = RenderGroups(scene, "path", Options(), 6 * kPasses, kGroups, 1);
     expectAgreement("sppm against path", CompareBlocks(sppm, path, kBlockSize, kTolerance));
     if (scene.GetCamera().CanConnect()) {
       const GroupedImages lightTracing = RenderGroups(scene, "light_tracing", Options(), 2 * kPasses, kGroups, 2);

@@ -91,11 +91,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"cbox-v3", "cbox", "sppm", 128}, Case{"ring-v3", "ring", "sppm", 128, 32, 0.02, kRingLeak},
                       Case{"lens-v3", "lens", "sppm", 128}, Case{"envglass-v3", "envglass", "sppm", 128}),
     NameOf);
-// The square map of envglass-v4 is resampled: single blocks may differ by 3 %, as the references' README says.
+// The square map of envglass-v4 is resampled: single blocks may differ by 3 %, as the references' README says. In the
+// darkest corner of its sky they differ by 6 %: there the file itself holds 0.01414 (its texels, read without
+// interpolation) where the reference and the latitude-longitude map hold 0.01337.
+constexpr double kResampledSky = 0.001;
 INSTANTIATE_TEST_SUITE_P(V4, BlockMeansAgree,
                          ::testing::Values(Case{"veach-v4", "veach", "path", 128},
-                                           Case{"envglass-v4", "envglass", "path", 128, 32, 0.03},
-                                           Case{"envglass-v4", "envglass", "sppm", 128, 32, 0.03}),
+                                           Case{"envglass-v4", "envglass", "path", 128, 32, 0.03, kResampledSky},
+                                           Case{"envglass-v4", "envglass", "sppm", 128, 32, 0.03, kResampledSky}),
                          NameOf);
 INSTANTIATE_TEST_SUITE_P(OthersScenes, BlockMeansAgree,
                          ::testing::Values(Case{"../data/killeroo-simple", "../data/killeroo-simple", "path", 128, 16},
@@ -133,9 +136,11 @@ TEST_P(Slope, OfErrorAgainstPasses) {
   const Image reference = ReadImage(ReferenceFolder() + "/" + c.reference + ".exr");
   const std::vector<int> stops = {4, 8, 16, 32, 64};
   std::vector<double> logError(stops.size());
+  IntegratorOptions options = OptionsOf(*scene);
+  options.photonsPerPass = 50000;  // the slope is that of any number
   constexpr int kSeeds = 5;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const auto integrator = MakeIntegrator(c.integrator, OptionsOf(*scene));
+    const auto integrator = MakeIntegrator(c.integrator, options);
     integrator->Prepare(*scene, seed);
     Film film(scene->Settings().resolution, scene->Settings().crop, scene->Settings().filter);
     for (size_t stop = 0; stop < stops.size(); ++stop) {
