@@ -77,6 +77,15 @@ void SetCrop(const BuildContext& context, const BuildOptions& options, const Vec
     throw Error(place, "the crop window holds no pixel, expected xMin xMax yMin yMax within the image");
 }
 
+/// A number that darkens or brightens the whole picture.
+double GetPositive(const Entity& film, const char* name, double otherwise) {
+  const double value = film.params.GetFloat(name, otherwise);
+  if (!(value > 0))
+    throw Error(film.params.LocationOf(name, film.location),
+                fmt::format("parameter \"{}\" is {}, expected more than 0", name, value));
+  return value;
+}
+
 /// The factor that v4's film applies to every value: shutter time * iso / 100.
 double ImagingRatio(const BuildContext& context) {
   const Entity& film = context.description.film;
@@ -90,7 +99,7 @@ double ImagingRatio(const BuildContext& context) {
   if (sensor != "cie1931")
     context.diagnostics.Warn(film.params.LocationOf("sensor", film.location),
                              fmt::format("sensor \"{}\" is not supported; \"cie1931\" is used", sensor));
-  return time * film.params.GetFloat("iso", 100) / 100;
+  return time * GetPositive(film, "iso", 100) / 100;
 }
 
 void BuildFilm(const BuildContext& context, const BuildOptions& options, RenderSettings* settings) {
@@ -106,7 +115,7 @@ void BuildFilm(const BuildContext& context, const BuildOptions& options, RenderS
   settings->outputFile = film.params.GetString("filename", "");
   film.params.GetFloat("diagonal", 35);  // matters to "realistic" cameras alone
   if (context.IsV3()) {
-    settings->exposure = static_cast<float>(film.params.GetFloat("scale", 1));
+    settings->exposure = static_cast<float>(GetPositive(film, "scale", 1));
     WarnUnsupported(context, film.params, "maxsampleluminance");
   } else {
     settings->exposure = static_cast<float>(ImagingRatio(context));

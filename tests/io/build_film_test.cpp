@@ -153,6 +153,9 @@ TEST(BuildFilm, ErrorsHaveAPlace) {
   EXPECT_EQ(ErrorOf(R"(PixelFilter "box" "float xradius" -1)", 4).substr(0, 17), "a.pbrt:1:1: error");
   EXPECT_EQ(ErrorOf(R"(Integrator "sppm" "float radius" 0)", 4).substr(0, 18), "a.pbrt:1:19: error");
   EXPECT_EQ(ErrorOf(R"(Sampler "zsobol" "integer pixelsamples" 0)", 4).substr(0, 18), "a.pbrt:1:18: error");
+  EXPECT_EQ(ErrorOf(R"(Film "rgb" "float iso" -100)", 4),
+            "a.pbrt:1:12: error: parameter \"iso\" is -100, expected more than 0");
+  EXPECT_EQ(ErrorOf(R"(Film "image" "float scale" 0)", 3).substr(0, 18), "a.pbrt:1:14: error");
   EXPECT_EQ(ErrorOf(R"(Sampler "stratified" "integer xsamples" 65536 "integer ysamples" 65536)", 4),
             "a.pbrt:1:22: error: \"xsamples\" times \"ysamples\" is 4294967296, expected at most 2147483647");
 }
