@@ -79,7 +79,7 @@ bool AnySkipped(const std::vector<bool>& skip, int width, int height, int blockX
 }  // namespace
 
 BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
-                          const std::vector<bool>& skip, double floor) {
+                          const std::vector<bool>& skip, double floor, double referenceVariance) {
   BlockReport report;
   std::string failures;
   std::vector<double> sigmas;
@@ -94,7 +94,7 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
       for (int c = 0; c < Color::kComponents; ++c, ++entry) {
         if (skipped) continue;
         const double expected = r.mean.At(x, y, c), got = t.mean.At(x, y, c);
-        const double sigma = std::sqrt(t.variance[entry] + r.variance[entry]);
+        const double sigma = std::sqrt(t.variance[entry] * (1 + referenceVariance) + r.variance[entry]);
         const double excess = std::abs(got - expected) - std::max(tolerance * expected, floor) - 3 * sigma;
         if (expected > 0) sigmas.push_back(sigma / expected);
         blockFailed |= excess > 0;

@@ -40,9 +40,10 @@ struct BlockReport {
 
 /// Compares the means of blocks of blockSize^2 pixels. Sigma is the standard error of the block's mean over the groups
 /// of both sides. `skip`, where not empty, is one flag a pixel: blocks with any flagged pixel are left out. `floor` is
-/// a difference that is allowed in any block, for references with an error of their own.
+/// a difference that is allowed in any block, for references with an error of their own; `referenceVariance` is the
+/// variance of a reference without groups, as a multiple of the test's.
 BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
-                          const std::vector<bool>& skip = {}, double floor = 0);
+                          const std::vector<bool>& skip = {}, double floor = 0, double referenceVariance = 0);
 
 /// A reference image without an error bar of its own.
 inline GroupedImages Exact(Image image) { return {{std::move(image)}}; }
