@@ -46,6 +46,7 @@ struct Case {
   int referenceSamples = 0;  // of a path-traced reference whose noise is not negligible
   double maxFailedShare = 0;
   int groups = 8;
+  int photons = 0;  // light paths a pass; 0: as the scene says
 };
 
 // At the foot of the ring the reference (another renderer's photon map) has light that leaked under the wall: its
@@ -146,7 +147,7 @@ TEST_P(Slope, OfErrorAgainstPasses) {
   const std::vector<int> stops = {4, 8, 16, 32, 64};
   std::vector<double> logError(stops.size());
   IntegratorOptions options = OptionsOf(*scene);
-  options.photonsPerPass = 50000;  // the slope is that of any number
+  if (c.photons > 0) options.photonsPerPass = c.photons;
   constexpr int kSeeds = 5;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const auto integrator = MakeIntegrator(c.integrator, options);
@@ -171,11 +172,20 @@ TEST_P(Slope, OfErrorAgainstPasses) {
   EXPECT_LE(slope, c.integrator == "sppm" ? -0.6 : -0.9);
 }
 
+Case WithPhotons(Case c, int photons) {
+  c.photons = photons;
+  return c;
+}
+
+// 50,000 light paths a pass keep the error above the references' own; envglass, where few photons are of use, has its
+// 200,000.
 INSTANTIATE_TEST_SUITE_P(V3, Slope,
                          ::testing::Values(Case{"cbox-v3", "cbox", "path", 64}, Case{"ring-v3", "ring", "path", 64},
                                            Case{"envglass-v3", "envglass", "path", 64},
-                                           Case{"veach-v3", "veach", "path", 64}, Case{"cbox-v3", "cbox", "sppm", 64},
-                                           Case{"ring-v3", "ring", "sppm", 64}, Case{"lens-v3", "lens", "sppm", 64},
+                                           Case{"veach-v3", "veach", "path", 64},
+                                           WithPhotons({"cbox-v3", "cbox", "sppm", 64}, 50000),
+                                           WithPhotons({"ring-v3", "ring", "sppm", 64}, 50000),
+                                           WithPhotons({"lens-v3", "lens", "sppm", 64}, 50000),
                                            Case{"envglass-v3", "envglass", "sppm", 64}),
                          NameOf);
 
