@@ -31,8 +31,8 @@ void Orthogonalize(Vec3d (&m)[3]) {
 }  // namespace
 
 EnvironmentLight::EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale,
-                                   Mapping mapping)
-    : map_(image, mapping, scale), axes_{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)} {
+                                   Mapping mapping, const EnvironmentOptions& options)
+    : map_(image, mapping, scale), options_(options), axes_{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)} {
   if (lightToRender.IsSingular()) throw Error("transform of an infinite light cannot be inverted: expected a rotation");
   double longest = 0;
   for (Vec3d& axis : axes_) longest = std::max(longest, Length(axis = lightToRender.Vector(axis)));
@@ -78,27 +78,36 @@ LiRandom EnvironmentLight::Invert_Li(const LightContext&, const Vec3& wi, const 
   return u;
 }
 
+double EnvironmentLight::EmissionPdf(const EnvironmentValue& value) const {
+  return options_.emission == EnvironmentEmission::Uniform ? kSpherePdf : value.pdf;
+}
+
 std::optional<LeSample> EnvironmentLight::Sample_Le(const LeRandom& u) const {
   if (map_.IsBlack()) return std::nullopt;
-  const Vec3 wi = ToRender(map_.Sample(u.direction));
+  const bool isUniform = options_.emission == EnvironmentEmission::Uniform;
+  const Vec3 wi = ToRender(isUniform ? SampleSphere(u.direction) : map_.Sample(u.direction));
   const EnvironmentValue value = map_.Evaluate(ToMap(wi));
-  if (value.pdf == 0 || value.L.IsBlack()) return std::nullopt;
+  const double pdf = EmissionPdf(value);
+  if (pdf == 0 || value.L.IsBlack()) return std::nullopt;
   const EmissionDisk disk(extent_, wi);
   LeSample sample;
   sample.ray = Ray{disk.Sample(u.position), -wi};
   sample.Le = value.L;
   sample.pdfPos = 1 / disk.area;
-  sample.pdfDir = value.pdf;
+  sample.pdfDir = pdf;
   return sample;
 }
 
 LePdf EnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
-  return {EmissionDisk(extent_, -ray.d).Pdf(ray.o), map_.Evaluate(ToMap(-ray.d)).pdf};
+  return {EmissionDisk(extent_, -ray.d).Pdf(ray.o), EmissionPdf(map_.Evaluate(ToMap(-ray.d)))};
 }
 
 LeRandom EnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
   LeRandom u;
-  if (!map_.IsBlack()) u.direction = map_.Invert(ToMap(-ray.d));
+  if (!map_.IsBlack()) {
+    const Vec3d w = ToMap(-ray.d);
+    u.direction = options_.emission == EnvironmentEmission::Uniform ? InvertSphere(w) : map_.Invert(w);
+  }
   u.position = EmissionDisk(extent_, -ray.d).Invert(ray.o);
   return u;
 }

@@ -1,7 +1,8 @@
 // Light from all around: an image of the environment, or one radiance from everywhere.
 //
 // pbrt: `LightSource "infinite"`. One table gives the directions both of `Sample_Li` and of `Sample_Le`; emitted rays
-// start on a disk across the scene (emission_disk.h), so that the power is the integral of L(w) A(w).
+// start on a disk across the scene (emission_disk.h), so that the power is the integral of L(w) A(w). For comparison,
+// emission may draw its directions evenly instead.
 #pragma once
 
 #include "lights/environment_map.h"
@@ -10,13 +11,25 @@
 
 namespace dapple {
 
+/// How an environment draws the directions of the rays that it emits.
+enum class EnvironmentEmission {
+  Importance,  ///< by radiance, from the table of the map
+  Uniform,     ///< evenly over the sphere
+};
+
+/// How an environment is sampled.
+struct EnvironmentOptions {
+  EnvironmentEmission emission = EnvironmentEmission::Importance;
+};
+
 class EnvironmentLight final : public Light {
  public:
   using Mapping = EnvironmentMapping;
 
   /// `image` as `EnvironmentMap` takes it; `EnvironmentMap::Repair` makes it so. Of `lightToRender` the nearest
   /// rotation (or rotation with reflection) counts: radiance does not depend on lengths.
-  EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale, Mapping mapping);
+  EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale, Mapping mapping,
+                   const EnvironmentOptions& options = {});
 
   std::string_view Name() const override { return "infinite"; }
   bool IsInfinite() const override { return true; }
@@ -40,8 +53,11 @@ class EnvironmentLight final : public Light {
  private:
   Vec3 ToRender(const Vec3d& w) const;
   Vec3d ToMap(const Vec3& w) const;
+  /// The density of emitted directions where the map has `value`.
+  double EmissionPdf(const EnvironmentValue& value) const;
 
   EnvironmentMap map_;
+  EnvironmentOptions options_;
   Vec3d axes_[3];  // the map's x, y and z in render space
   SceneExtent extent_;
 };

@@ -88,7 +88,21 @@ double PbrtUpperIlluminance(const Image& map) {
   return sum * 2 * kPiD / (static_cast<double>(map.Width()) * map.Height());
 }
 
-std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescription& light, const Parameter& fileName) {
+/// Dapple's own parameters of infinite lights.
+EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
+  EnvironmentOptions options;
+  const std::string emission = light.params.GetString("emission", "importance");
+  if (emission == "uniform") {
+    options.emission = EnvironmentEmission::Uniform;
+  } else if (emission != "importance") {
+    FailUnknownName(light.params.LocationOf("emission", light.location), "emission", emission,
+                    {"importance", "uniform"});
+  }
+  return options;
+}
+
+std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescription& light, const Parameter& fileName,
+                                           const EnvironmentOptions& options) {
   const BuildContext& context = values.Context();
   const bool isV3 = context.IsV3();
   // Not through the cache, whose repair would put out an infinitely bright sun.
@@ -109,20 +123,23 @@ std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescriptio
   if (!isV3 && light.params.Has("illuminance"))
     scale *= TargetFactor(context, light, "illuminance", PbrtUpperIlluminance(map));
   return std::make_unique<EnvironmentLight>(map, context.renderFromWorld * light.worldFromLight, scale,
-                                            isV3 ? EnvironmentMapping::LatLong : EnvironmentMapping::EqualArea);
+                                            isV3 ? EnvironmentMapping::LatLong : EnvironmentMapping::EqualArea,
+                                            options);
 }
 
 std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& light) {
   const BuildContext& context = values.Context();
   if (const Parameter* portal = light.params.Find("portal"))
     context.diagnostics.Warn(portal->location, "a portal is not supported; the light shines from everywhere");
+  const EnvironmentOptions options = GetEnvironmentOptions(light);
   const Parameter* fileName = light.params.Find(context.IsV3() ? "mapname" : "filename");
   if (fileName) {
     if (!context.IsV3() && light.params.Has("L"))
       throw Error(fileName->location, "both \"L\" and \"filename\" are given, expected one of them");
-    return BuildEnvironmentMap(values, light, *fileName);
+    return BuildEnvironmentMap(values, light, *fileName, options);
   }
   const Color L = GetEmission(values, light, "L") * TargetFactor(context, light, "illuminance", kPiD);
+  // The same from everywhere: both ways to emit are one.
   return std::make_unique<UniformEnvironmentLight>(L);
 }
 

@@ -3,6 +3,9 @@
 // pbrt-v3: every light has a colour "scale". pbrt-v4: a number "scale"; spectra and black bodies are first brought to
 // luminance one, RGB is taken as it is; "power" (lumen, so to speak) then makes the light's colour, times its scale,
 // emit that much, and "illuminance" (of an infinite light: of its upper hemisphere, z > 0) shine that much on a plane.
+//
+// Dapple's own: infinite lights have a string "emission", "importance" (default) or "uniform", which says how the
+// directions of emitted photons are drawn (`EnvironmentEmission`); the light itself is the same.
 #pragma once
 
 #include <memory>

@@ -141,6 +141,35 @@ TEST(BuildLights, EnvironmentMapsOfBothVersions) {
             "a.pbrt:5:24: error");
 }
 
+TEST(BuildLights, EmissionOfAMapIsByImportanceOrUniform) {
+  const TestFolder folder;
+  Image image = Image::Rgb(16, 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 16; ++x) image.SetColor(x, y, Color(x == 3 && y == 5 ? 100 : 1));
+  WriteExr((folder.Path() / "sky.exr").string(), image);
+  const auto lit = [&](const std::string& more) {
+    return Lit("LightSource \"infinite\" \"string mapname\" \"sky.exr\" " + more, 3, folder.Path());
+  };
+  const Built plain = lit(""), importance = lit(R"("string emission" "importance")");
+  const Built uniform = lit(R"("string emission" "uniform")");
+  EXPECT_EQ(uniform->Lights()[0]->Power(), plain->Lights()[0]->Power());
+  EXPECT_TRUE(uniform.warnings.empty());
+  for (const Vec3& d : {Vec3(0, 0, 1), Vec3(0.6f, 0, -0.8f)}) {
+    const Ray ray{Vec3(0), d};
+    EXPECT_NEAR(uniform->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction, 1 / (4 * kPiD), 1e-15);
+    EXPECT_EQ(importance->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction,
+              plain->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction);
+    EXPECT_NE(plain->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction, uniform->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction);
+  }
+  for (const std::string map : {"\"string mapname\" \"sky.exr\"", "\"rgb L\" [1 1 1]"}) {
+    const std::string message = MessageOf(
+        [&] { Lit("LightSource \"infinite\" " + map + " \"string emission\" \"unifrom\"", 3, folder.Path()); });
+    EXPECT_EQ(message.substr(0, 9), "a.pbrt:5:") << message;
+    EXPECT_NE(message.find("unknown emission \"unifrom\""), std::string::npos) << message;
+    EXPECT_NE(message.find("uniform"), std::string::npos) << message;
+  }
+}
+
 TEST(BuildLights, BadPixelsOfAMapAreMendedWithAWarning) {
   const TestFolder folder;
   Image image = Image::Rgb(8, 4);

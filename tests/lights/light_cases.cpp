@@ -104,10 +104,16 @@ std::vector<LightCase> AllLights() {
   using Mapping = EnvironmentMapping;
   add("lat-long environment", std::make_unique<EnvironmentLight>(RandomEnvironment(16, 8, 1), SomeRotation(),
                                                                  Color(1, 0.5f, 2), Mapping::LatLong));
+  add("lat-long environment, uniform emission",
+      std::make_unique<EnvironmentLight>(RandomEnvironment(16, 8, 1), SomeRotation(), Color(1, 0.5f, 2),
+                                         Mapping::LatLong, EnvironmentOptions{EnvironmentEmission::Uniform}));
   add("lat-long environment of one pixel",
       std::make_unique<EnvironmentLight>(RandomEnvironment(1, 1, 2), SomeRotation(), Color(1), Mapping::LatLong));
   add("equal-area environment",
       std::make_unique<EnvironmentLight>(RandomEnvironment(8, 8, 3), SomeRotation(), Color(1), Mapping::EqualArea));
+  add("equal-area environment, uniform emission",
+      std::make_unique<EnvironmentLight>(RandomEnvironment(8, 8, 3), SomeRotation(), Color(1), Mapping::EqualArea,
+                                         EnvironmentOptions{EnvironmentEmission::Uniform}));
   AddAreaLights(&cases);
   for (LightCase& c : cases) c.light->Prepare(kTestExtent);
   return cases;
