@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/chi_square.h"
+
 namespace dapple {
 namespace {
 
@@ -121,6 +123,12 @@ Distribution2D HardTable() {
               4, 6);
 }
 
+double RowProbability(const Distribution2D& table, int y) {
+  double sum = 0;
+  for (int x = 0; x < table.Width(); ++x) sum += table.Probability({x, y});
+  return sum;
+}
+
 TEST(Distribution2D, DrawDensityAndInverseAgree) {
   for (const Distribution2D& table :
        {HardTable(), Make({5}, 1, 1), Make({0, 0, 0, 1}, 2, 2), Make({1, 0, 0, 0}, 2, 2)}) {
@@ -130,9 +138,12 @@ TEST(Distribution2D, DrawDensityAndInverseAgree) {
       const ContinuousSample2D sample = table.Sample(u);
       ASSERT_GT(sample.pdf, 0);
       ASSERT_EQ(sample.pdf, table.Pdf(sample.p));
-      const double scale = std::max(1.0, sample.pdf);
-      ASSERT_NEAR(table.Invert(sample.p).x, u.x, 8 * 0x1p-53 * scale);
-      ASSERT_NEAR(table.Invert(sample.p).y, u.y, 8 * 0x1p-53 * scale);
+      // Along each axis x is known to half an ulp: within a cell of conditional probability p that is n p / 2 of u.
+      const double rowShare = RowProbability(table, sample.cell.y);
+      const Vec2d scale(std::max(1.0, sample.pdf / (rowShare * table.Height())),
+                        std::max(1.0, rowShare * table.Height()));
+      ASSERT_NEAR(table.Invert(sample.p).x, u.x, 4 * 0x1p-53 * scale.x);
+      ASSERT_NEAR(table.Invert(sample.p).y, u.y, 4 * 0x1p-53 * scale.y);
       const DiscreteSample2D cell = table.SampleDiscrete(u);
       ASSERT_EQ(cell.cell, sample.cell);
       ASSERT_EQ(cell.probability, table.Probability(cell.cell));
@@ -155,6 +166,91 @@ TEST(Distribution2D, NothingIsDrawnWhereAllIsZero) {
   EXPECT_TRUE(table.IsZero());
   EXPECT_EQ(table.Sample({0.5, 0.5}).cell.x, -1);
   EXPECT_EQ(table.Pdf({0.5, 0.5}), 0);
+}
+
+// One percent for all the chi-square tests of distributions together.
+constexpr int kChiSquareTests = 13;
+const double kLevel = testing::SidakLevel(0.01, kChiSquareTests);
+
+TEST(DistributionChiSquare, OneDimension) {
+  for (const std::vector<double>& weights : Tables()) {
+    const Distribution1D distribution = Make(weights);
+    const auto sample = [&](double u) { return distribution.SampleContinuous(u).x; };
+    const auto pdf = [&](double x) { return distribution.Pdf(x); };
+    const testing::ChiSquareOptions options{.samples = 50'000, .rows = 10, .columns = 25, .seed = 4};
+    const testing::ChiSquare fit = testing::ChiSquareOnInterval(sample, pdf, 0, 1, options);
+    EXPECT_GT(fit.pValue, kLevel) << weights.size() << " cells: " << fit.message;
+  }
+}
+
+TEST(DistributionChiSquare, TwoDimensions) {
+  const std::vector<float> uneven = {3, 0, 1, 2, 0, 0, 0, 5, 4, 1, 1, 1};
+  for (const Distribution2D& table : {HardTable(), Make(uneven, 4, 3), Make(uneven, 3, 4), Make({5}, 1, 1)}) {
+    const testing::ChiSquare fit = testing::ChiSquareOnCube<2>(
+        [&](testing::UniformNumbers& random) {
+          const ContinuousSample2D drawn = table.Sample(random.Get2D());
+          return std::optional(testing::Coordinates<2>{drawn.p.x, drawn.p.y});
+        },
+        [&](const testing::Coordinates<2>& x) {
+          return table.Pdf({x[0], x[1]});
+        },
+        {2 * table.Width(), 2 * table.Height()}, 50'000, 5);
+    EXPECT_GT(fit.pValue, kLevel) << fit.message;
+  }
+}
+
+// Random numbers are multiples of 2^-32 (src/sampling/sampler.h); 24 bits would reach 170 numbers a cell here, of which
+// dim cells would have none.
+TEST(DistributionLargeTables, EveryOneOfAHundredThousandCellsIsDrawnByItsShare) {
+  constexpr int kCells = 100'000;
+  std::vector<double> weights(kCells);
+  for (int i = 0; i < kCells; ++i) weights[static_cast<size_t>(i)] = i % 1000 == 7 ? 1e-4 : 1 + i % 3;
+  const Distribution1D distribution = Make(weights);
+  for (int i = 0; i < kCells; ++i) {
+    // The multiples of 2^-32 that give the cell are as many as its probability says, to within one.
+    const double low = distribution.InvertDiscrete(i, 0) * 0x1p32, high = distribution.InvertDiscrete(i, 1) * 0x1p32;
+    const double first = std::ceil(low), count = std::ceil(high) - first;
+    ASSERT_NEAR(count, distribution.Probability(i) * 0x1p32, 1);
+    ASSERT_GE(count, 1) << i;
+    for (const double k : {first, first + std::floor(count / 2), first + count - 1}) {
+      ASSERT_EQ(distribution.SampleDiscrete(k * 0x1p-32).index, i) << k;
+    }
+  }
+}
+
+TEST(DistributionLargeTables, A16384x8192TableIsExactAtEveryCell) {
+  constexpr int kWidth = 16384, kHeight = 8192;
+  // Rows of zeros, zeros within rows, and one bright cell.
+  std::vector<float> row(kWidth), weights(static_cast<size_t>(kWidth) * kHeight);
+  for (int x = 0; x < kWidth; ++x) row[static_cast<size_t>(x)] = static_cast<float>(x * 7 % 11);
+  double rowSum = 0, sum = 0;
+  for (const float w : row) rowSum += static_cast<double>(w);
+  for (int y = 0; y < kHeight; ++y) {
+    if (y % 5 == 0) continue;
+    std::copy(row.begin(), row.end(), weights.begin() + static_cast<ptrdiff_t>(y) * kWidth);
+    sum += rowSum;
+  }
+  constexpr int kBrightRow = 4321;
+  constexpr double kBright = 1e6;
+  weights[static_cast<size_t>(kBrightRow) * kWidth + 12345] += static_cast<float>(kBright);
+  sum += kBright;
+  const Distribution2D table(std::span<const float>(weights), kWidth, kHeight);
+  EXPECT_NEAR(table.Sum() / sum, 1, 1e-14);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int i = 0; i < 200'000; ++i) {
+    const Vec2d u(uniform(random), uniform(random));
+    const ContinuousSample2D drawn = table.Sample(u);
+    const float weight = weights[static_cast<size_t>(drawn.cell.y) * kWidth + static_cast<size_t>(drawn.cell.x)];
+    ASSERT_GT(weight, 0);
+    ASSERT_EQ(drawn.pdf, table.Pdf(drawn.p));
+    // A cell's share is a difference of sums near one: known to 2^-53 of its row and of the column of rows.
+    ASSERT_NEAR(drawn.pdf / (static_cast<double>(weight) / sum * kWidth * kHeight), 1, 1e-8);
+    const Vec2d back = table.Invert(drawn.p);
+    const double rowPdf = (rowSum + (drawn.cell.y == kBrightRow ? kBright : 0)) / sum * kHeight;
+    ASSERT_NEAR(back.x, u.x, 4 * 0x1p-53 * std::max(1.0, drawn.pdf / rowPdf));
+    ASSERT_NEAR(back.y, u.y, 4 * 0x1p-53 * std::max(1.0, rowPdf));
+  }
 }
 
 }  // namespace

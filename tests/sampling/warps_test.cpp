@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "src/base/numerics.h"
+#include "tests/support/chi_square.h"
 
 namespace dapple {
 namespace {
@@ -107,6 +108,94 @@ TEST(Warps, Triangle) {
   for (const Vec2d& u : RandomPoints(3)) {
     const Vec2d b = SampleTriangle(u);
     EXPECT_TRUE(b.x >= 0 && b.y >= 0 && b.x + b.y <= 1);
+  }
+}
+
+// One percent for all the chi-square tests of warps together.
+constexpr int kChiSquareTests = 40;
+const double kLevel = testing::SidakLevel(0.01, kChiSquareTests);
+constexpr testing::ChiSquareOptions kOptions{.samples = 50'000, .rows = 16, .columns = 32, .seed = 9};
+
+TEST(WarpsChiSquare, Disks) {
+  for (const auto& warp : {SampleDiskPolar, SampleDiskConcentric}) {
+    const testing::ChiSquare fit = testing::ChiSquareOnDisk(
+        warp, [](const Vec2d&) { return kDiskPdf; }, kOptions);
+    EXPECT_GT(fit.pValue, kLevel) << fit.message;
+  }
+}
+
+// Of a warp that is given as functions of Vec2d and Vec3d, over the cone in which it may lie.
+void ExpectFit(const std::function<Vec3d(const Vec2d&)>& sample, const std::function<double(const Vec3d&)>& pdf,
+               double oneMinusCosMax) {
+  const auto draw = [&](testing::UniformNumbers& random) { return std::optional(sample(random.Get2D())); };
+  // Seen in a frame that leans, and in the warp's own.
+  for (const Vec3& axis : {Vec3(0, 0, 1), Normalize(Vec3(1, 2, 3)), Normalize(Vec3(-2, 1, 0))}) {
+    const double size = axis.z == 1 ? oneMinusCosMax : 2;
+    if (size == 2 && oneMinusCosMax < 0.1) continue;  // too small for the cells of the sphere
+    const testing::ChiSquare fit =
+        testing::ChiSquareOnCone(draw, pdf, testing::ConeDomain(size, Frame::FromZ(axis)), kOptions);
+    EXPECT_GT(fit.pValue, kLevel) << fit.message << ", 1 - cos " << oneMinusCosMax;
+  }
+}
+
+TEST(WarpsChiSquare, Sphere) {
+  ExpectFit(
+      SampleSphere, [](auto&) { return kSpherePdf; }, 2);
+}
+
+TEST(WarpsChiSquare, Hemisphere) {
+  ExpectFit(
+      SampleHemisphere, [](auto& w) { return w.z >= 0 ? kHemispherePdf : 0; }, 1);
+}
+
+TEST(WarpsChiSquare, CosineHemisphere) {
+  ExpectFit(
+      SampleCosineHemisphere, [](auto& w) { return CosineHemispherePdf(w.z); }, 1);
+}
+
+TEST(WarpsChiSquare, Cone) {
+  for (const double size : {1e-12, 1e-3, 0.5, 1.9}) {
+    ExpectFit([&](auto& u) { return SampleCone(u, size); },
+              // 1 - cos theta, without cancellation.
+              [&](auto& w) {
+                const double sin2 = w.x * w.x + w.y * w.y;
+                return (w.z > 0 ? sin2 / (1 + w.z) : 1 - w.z) <= size * (1 + 1e-9) ? ConePdf(size) : 0;
+              },
+              size);
+  }
+}
+
+// On the unit square: the triangle fills half of it.
+void ExpectFitOnSquare(const std::function<Vec2d(const Vec2d&)>& sample,
+                       const std::function<double(const Vec2d&)>& pdf) {
+  const testing::ChiSquare fit = testing::ChiSquareOnCube<2>(
+      [&](testing::UniformNumbers& random) {
+        const Vec2d p = sample(random.Get2D());
+        return std::optional(testing::Coordinates<2>{p.x, p.y});
+      },
+      [&](const testing::Coordinates<2>& x) {
+        return pdf({x[0], x[1]});
+      },
+      {20, 20}, kOptions.samples, kOptions.seed);
+  EXPECT_GT(fit.pValue, kLevel) << fit.message;
+}
+
+TEST(WarpsChiSquare, Triangle) {
+  ExpectFitOnSquare(SampleTriangle, [](auto& b) { return b.x + b.y <= 1 ? 2.0 : 0.0; });
+}
+
+TEST(WarpsChiSquare, Linear) {
+  for (const auto& [a, b] : {std::pair(1.0, 3.0), {2.0, 2.0}, {0.0, 1.0}, {1.0, 0.0}}) {
+    const testing::ChiSquare fit = testing::ChiSquareOnInterval(
+        [&](double u) { return SampleLinear(u, a, b); }, [&](double x) { return LinearPdf(x, a, b); }, 0, 1, kOptions);
+    EXPECT_GT(fit.pValue, kLevel) << fit.message;
+  }
+}
+
+TEST(WarpsChiSquare, Bilinear) {
+  const double cases[][4] = {{1, 2, 3, 4}, {0, 0, 1, 1}, {0, 1, 0, 0}, {5, 0, 0, 5}};
+  for (const auto& w : cases) {
+    ExpectFitOnSquare([&](auto& u) { return SampleBilinear(u, w); }, [&](auto& p) { return BilinearPdf(p, w); });
   }
 }
 

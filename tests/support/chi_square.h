@@ -1,5 +1,5 @@
-// Chi-square goodness of fit between a sampling routine and the density that it claims, on an interval or on the
-// sphere.
+// Chi-square goodness of fit between a sampling routine and the density that it claims: on the interval, the disk, the
+// sphere, the hemisphere, a cone, or any domain with coordinates of equal measure (area x direction, for one).
 //
 //   const double level = SidakLevel(0.01, kTests);   // 1 % for the whole family of kTests
 //   const ChiSquare fit = ChiSquareOnSphere(sample, pdf, {.seed = 1});
@@ -18,12 +18,13 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "src/base/frame.h"
 #include "src/base/vec.h"
+#include "tests/support/quadrature.h"
+#include "tests/support/random_numbers.h"
 
 namespace dapple::testing {
 
@@ -92,7 +93,7 @@ inline ChiSquare CompareCounts(const std::vector<double>& expected, const std::v
 
 struct ChiSquareOptions {
   int samples = 200'000;
-  int rows = 24;     ///< cells along cos theta, or along the interval
+  int rows = 24;     ///< cells along cos theta, the disk's radius, or the interval
   int columns = 48;  ///< cells along phi
   uint64_t seed = 1;
   Frame frame = {};  ///< of the sphere's grid: its cells are slivers at the poles, so keep detail away
@@ -100,122 +101,151 @@ struct ChiSquareOptions {
 
 namespace internal {
 
-/// The integral of f over a rectangle: 3 x 3 Gauss points, halved both ways until it stands still.
-template <typename F>
-double IntegrateRectangle(const F& f, double x0, double x1, double y0, double y1, double tolerance, int depth) {
-  static constexpr std::array<double, 3> kAt = {-0.774596669241483377, 0, 0.774596669241483377};
-  static constexpr std::array<double, 3> kWeight = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-  const auto gauss = [&](double a, double b, double c, double d) {
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        sum += kWeight[i] * kWeight[j] * f((a + b) / 2 + kAt[i] * (b - a) / 2, (c + d) / 2 + kAt[j] * (d - c) / 2);
-      }
-    }
-    return sum * (b - a) * (d - c);
-  };
-  const double xm = (x0 + x1) / 2, ym = (y0 + y1) / 2;
-  const double coarse = gauss(x0, x1, y0, y1);
-  const double fine = gauss(x0, xm, y0, ym) + gauss(xm, x1, y0, ym) + gauss(x0, xm, ym, y1) + gauss(xm, x1, ym, y1);
-  if (depth == 0 || std::abs(fine - coarse) < tolerance) return fine;
-  const auto part = [&](double a, double b, double c, double d) {
-    return IntegrateRectangle(f, a, b, c, d, tolerance / 2, depth - 1);
-  };
-  return part(x0, xm, y0, ym) + part(xm, x1, y0, ym) + part(x0, xm, ym, y1) + part(xm, x1, ym, y1);
-}
-
-inline ChiSquare Finish(std::vector<double> probability, std::vector<double> observed, int samples) {
-  const double total = std::accumulate(probability.begin(), probability.end(), 0.0);
-  if (!(total < 1.0005)) {
-    ChiSquare result;
-    result.total = total;
-    result.message = "the density integrates to " + std::to_string(total);
-    return result;
+/// The cell of the unit cube that holds `x`; `count`, the number of all cells, where none does.
+template <int D>
+size_t CellOf(const Coordinates<D>& x, const std::array<int, D>& cells, size_t count) {
+  constexpr double kRounding = 1e-9;
+  size_t cell = 0, stride = 1;
+  for (size_t axis = 0; axis < D; ++axis) {
+    if (!(x[axis] >= -kRounding && x[axis] <= 1 + kRounding)) return count;
+    const int at = std::clamp(static_cast<int>(x[axis] * cells[axis]), 0, cells[axis] - 1);
+    cell += stride * static_cast<size_t>(at);
+    stride *= static_cast<size_t>(cells[axis]);
   }
-  probability.push_back(std::max(0.0, 1 - total));  // observed has its cell of nothing at the end already
-  for (double& p : probability) p *= samples;
-  ChiSquare result = CompareCounts(probability, observed);
-  result.total = total;
-  result.message += ", the density integrates to " + std::to_string(total);
-  return result;
+  return cell;
 }
 
 }  // namespace internal
+
+/// `sample(random)` gives a point of the unit cube, or nothing; `density(x)` is per unit volume of the cube, where a
+/// domain was mapped to it so that equal volumes are equal measures of the domain. `cells` along each axis.
+template <int D, typename Sample, typename Density>
+ChiSquare ChiSquareOnCube(const Sample& sample, const Density& density, const std::array<int, D>& cells, int samples,
+                          uint64_t seed) {
+  constexpr int kDepth = D <= 2 ? 12 : 10;
+  size_t count = 1;
+  for (const int n : cells) count *= static_cast<size_t>(n);
+  std::vector<double> probability(count), observed(count + 1);
+  for (size_t i = 0; i < count; ++i) {
+    Box<D> cell;
+    for (size_t axis = 0, rest = i; axis < D; ++axis) {
+      const size_t n = static_cast<size_t>(cells[axis]);
+      cell.low[axis] = static_cast<double>(rest % n) / cells[axis];
+      cell.high[axis] = static_cast<double>(rest % n + 1) / cells[axis];
+      rest /= n;
+    }
+    probability[i] = Integrate<D>(density, cell, 0.05 / samples, kDepth);
+  }
+  UniformNumbers random(seed);
+  for (int i = 0; i < samples; ++i) {
+    const std::optional<Coordinates<D>> x = sample(random);
+    observed[x ? internal::CellOf<D>(*x, cells, count) : count] += 1;
+  }
+  ChiSquare result;
+  result.total = std::accumulate(probability.begin(), probability.end(), 0.0);
+  const std::string total = "the density integrates to " + std::to_string(result.total);
+  if (!(result.total < 1.0005)) {
+    result.message = total;
+    return result;
+  }
+  probability.push_back(std::max(0.0, 1 - result.total));  // of nothing
+  for (double& p : probability) p *= samples;
+  const ChiSquare fit = CompareCounts(probability, observed);
+  return {fit.pValue, result.total, fit.message + ", " + total};
+}
+
+/// Coordinates of equal measure for the cone around the frame's n with 1 - cos thetaMax in (0, 2]: share of 1 - cos
+/// theta, turn. 1 is the hemisphere and 2 the sphere.
+class ConeDomain {
+ public:
+  explicit ConeDomain(double oneMinusCosMax, const Frame& frame = {})
+      : oneMinusCosMax_(oneMinusCosMax), s_(ToDouble(frame.s)), t_(ToDouble(frame.t)), n_(ToDouble(frame.n)) {}
+
+  double SolidAngle() const { return 2 * std::numbers::pi * oneMinusCosMax_; }
+  Vec3d Point(double share, double turn) const {
+    const double oneMinusCos = share * oneMinusCosMax_, phi = 2 * std::numbers::pi * turn;
+    const double sinTheta = std::sqrt(oneMinusCos * (2 - oneMinusCos));
+    return s_ * (sinTheta * std::cos(phi)) + t_ * (sinTheta * std::sin(phi)) + n_ * (1 - oneMinusCos);
+  }
+  /// Nothing outside the cone, but for rounding.
+  std::optional<Coordinates<2>> CoordinatesOf(const Vec3d& w) const {
+    const double x = Dot(w, s_), y = Dot(w, t_), turn = std::atan2(y, x) / (2 * std::numbers::pi);
+    const double half = std::sin(std::atan2(std::hypot(x, y), Dot(w, n_)) / 2);
+    const double share = 2 * half * half / oneMinusCosMax_;
+    if (share > 1.0001) return std::nullopt;
+    return Coordinates<2>{std::min(share, 1.0), turn < 0 ? turn + 1 : turn};
+  }
+
+ private:
+  double oneMinusCosMax_;
+  Vec3d s_, t_, n_;
+};
+
+/// Coordinates of equal measure for the unit disk: squared radius, turn.
+struct DiskDomain {
+  static constexpr double kArea = std::numbers::pi;
+  static Vec2d Point(double share, double turn) {
+    const double r = std::sqrt(share), phi = 2 * std::numbers::pi * turn;
+    return {r * std::cos(phi), r * std::sin(phi)};
+  }
+  /// Nothing outside the disk, but for rounding.
+  static std::optional<Coordinates<2>> CoordinatesOf(const Vec2d& p) {
+    const double share = p.x * p.x + p.y * p.y, turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
+    if (share > 1.0001) return std::nullopt;
+    return Coordinates<2>{std::min(share, 1.0), turn < 0 ? turn + 1 : turn};
+  }
+};
+
+/// `sample(random)` gives a unit direction or nothing; `pdf(w)` is per solid angle. Both speak of Vec3d.
+template <typename Sample, typename Pdf>
+ChiSquare ChiSquareOnCone(const Sample& sample, const Pdf& pdf, const ConeDomain& cone,
+                          const ChiSquareOptions& options = {}) {
+  return ChiSquareOnCube<2>(
+      [&](UniformNumbers& random) -> std::optional<Coordinates<2>> {
+        const std::optional<Vec3d> w = sample(random);
+        return w ? cone.CoordinatesOf(*w) : std::nullopt;
+      },
+      [&](const Coordinates<2>& x) { return pdf(cone.Point(x[0], x[1])) * cone.SolidAngle(); },
+      {options.rows, options.columns}, options.samples, options.seed);
+}
 
 /// `sample(uc, u)` gives a unit direction or nothing from random numbers in [0, 1); `pdf(w)` is per solid angle.
 inline ChiSquare ChiSquareOnSphere(const std::function<std::optional<Vec3>(double uc, const Vec2d& u)>& sample,
                                    const std::function<double(const Vec3& w)>& pdf,
                                    const ChiSquareOptions& options = {}) {
-  const int rows = options.rows, columns = options.columns;
-  const double twoPi = 2 * std::numbers::pi;
-  const auto density = [&](double cosTheta, double phi) {
-    const double sinTheta = std::sqrt(std::max(0.0, 1 - cosTheta * cosTheta));
-    const Vec3d local(sinTheta * std::cos(phi), sinTheta * std::sin(phi), cosTheta);
-    return pdf(options.frame.ToWorld(ToFloat(local)));
+  const auto draw = [&](UniformNumbers& random) -> std::optional<Vec3d> {
+    const double uc = random.Get1D();
+    const std::optional<Vec3> w = sample(uc, random.Get2D());
+    return w ? std::optional(ToDouble(*w)) : std::nullopt;
   };
-  std::vector<double> probability, observed(static_cast<size_t>(rows * columns + 1));
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      probability.push_back(internal::IntegrateRectangle(density, -1 + 2.0 * row / rows, -1 + 2.0 * (row + 1) / rows,
-                                                         twoPi * column / columns, twoPi * (column + 1) / columns,
-                                                         0.05 / options.samples, 6));
-    }
-  }
-  std::mt19937_64 random(options.seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  for (int i = 0; i < options.samples; ++i) {
-    const double uc = uniform(random), u0 = uniform(random), u1 = uniform(random);
-    const std::optional<Vec3> w = sample(uc, Vec2d(u0, u1));
-    size_t cell = static_cast<size_t>(rows * columns);
-    if (w) {
-      const Vec3 local = options.frame.ToLocal(*w);
-      const double phi = std::atan2(static_cast<double>(local.y), static_cast<double>(local.x));
-      const int row = std::clamp(static_cast<int>((static_cast<double>(local.z) + 1) / 2 * rows), 0, rows - 1);
-      const int column = std::clamp(static_cast<int>((phi < 0 ? phi + twoPi : phi) / twoPi * columns), 0, columns - 1);
-      cell = static_cast<size_t>(row * columns + column);
-    }
-    observed[cell] += 1;
-  }
-  return internal::Finish(std::move(probability), std::move(observed), options.samples);
+  return ChiSquareOnCone(
+      draw, [&](const Vec3d& w) { return pdf(ToFloat(w)); }, ConeDomain(2, options.frame), options);
+}
+
+/// `sample(u)` gives a point of the unit disk or nothing; `pdf(p)` is per unit area.
+inline ChiSquare ChiSquareOnDisk(const std::function<std::optional<Vec2d>(const Vec2d& u)>& sample,
+                                 const std::function<double(const Vec2d& p)>& pdf,
+                                 const ChiSquareOptions& options = {}) {
+  return ChiSquareOnCube<2>(
+      [&](UniformNumbers& random) -> std::optional<Coordinates<2>> {
+        const std::optional<Vec2d> p = sample(random.Get2D());
+        return p ? DiskDomain::CoordinatesOf(*p) : std::nullopt;
+      },
+      [&](const Coordinates<2>& x) { return pdf(DiskDomain::Point(x[0], x[1])) * DiskDomain::kArea; },
+      {options.rows, options.columns}, options.samples, options.seed);
 }
 
 /// `sample(u)` gives a point of [low, high] or nothing; `pdf(x)` is per unit length. Cells: rows x columns of them.
 inline ChiSquare ChiSquareOnInterval(const std::function<std::optional<double>(double u)>& sample,
                                      const std::function<double(double x)>& pdf, double low, double high,
                                      const ChiSquareOptions& options = {}) {
-  const int cells = options.rows * options.columns;
-  const auto edge = [&](int i) { return low + (high - low) * i / cells; };
-  std::vector<double> probability, observed(static_cast<size_t>(cells + 1));
-  for (int i = 0; i < cells; ++i) {
-    probability.push_back(internal::IntegrateRectangle([&](double x, double) { return pdf(x); }, edge(i), edge(i + 1),
-                                                       0, 1, 0.01 / options.samples, 6));
-  }
-  std::mt19937_64 random(options.seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  for (int i = 0; i < options.samples; ++i) {
-    const std::optional<double> x = sample(uniform(random));
-    const int cell = x ? std::clamp(static_cast<int>((*x - low) / (high - low) * cells), 0, cells - 1) : cells;
-    observed[static_cast<size_t>(cell)] += 1;
-  }
-  return internal::Finish(std::move(probability), std::move(observed), options.samples);
-}
-
-/// The integral of `f` over the sphere (not only of densities), to about 1e-5 for functions without needles.
-inline double IntegrateSphere(const std::function<double(const Vec3& w)>& f, const Frame& frame = {}) {
-  double sum = 0;
-  constexpr int kRows = 16, kColumns = 16;
-  const double twoPi = 2 * std::numbers::pi;
-  const auto density = [&](double cosTheta, double phi) {
-    const double sinTheta = std::sqrt(std::max(0.0, 1 - cosTheta * cosTheta));
-    return f(frame.ToWorld(ToFloat(Vec3d(sinTheta * std::cos(phi), sinTheta * std::sin(phi), cosTheta))));
-  };
-  for (int row = 0; row < kRows; ++row) {
-    for (int column = 0; column < kColumns; ++column) {
-      sum += internal::IntegrateRectangle(density, -1 + 2.0 * row / kRows, -1 + 2.0 * (row + 1) / kRows,
-                                          twoPi * column / kColumns, twoPi * (column + 1) / kColumns, 1e-7, 7);
-    }
-  }
-  return sum;
+  return ChiSquareOnCube<1>(
+      [&](UniformNumbers& random) -> std::optional<Coordinates<1>> {
+        const std::optional<double> x = sample(random.Get1D());
+        return x ? std::optional(Coordinates<1>{(*x - low) / (high - low)}) : std::nullopt;
+      },
+      [&](const Coordinates<1>& x) { return pdf(low + (high - low) * x[0]) * (high - low); },
+      {options.rows * options.columns}, options.samples, options.seed);
 }
 
 }  // namespace dapple::testing
