@@ -7,7 +7,7 @@
 
 #include "lights/environment_map.h"
 #include "lights/light.h"
-#include "src/base/transform.h"
+#include "lights/light_frame.h"
 
 namespace dapple {
 
@@ -26,8 +26,7 @@ class EnvironmentLight final : public Light {
  public:
   using Mapping = EnvironmentMapping;
 
-  /// `image` as `EnvironmentMap` takes it; `EnvironmentMap::Repair` makes it so. Of `lightToRender` the nearest
-  /// rotation (or rotation with reflection) counts: radiance does not depend on lengths.
+  /// `image` as `EnvironmentMap` takes it; `EnvironmentMap::Repair` makes it so. `lightToRender` as for `LightFrame`.
   EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale, Mapping mapping,
                    const EnvironmentOptions& options = {});
 
@@ -51,14 +50,14 @@ class EnvironmentLight final : public Light {
   const EnvironmentMap& Map() const { return map_; }
 
  private:
-  Vec3 ToRender(const Vec3d& w) const;
-  Vec3d ToMap(const Vec3& w) const;
+  Vec3 ToRender(const Vec3d& w) const { return frame_.ToRender(w); }
+  Vec3d ToMap(const Vec3& w) const { return frame_.ToLight(w); }
   /// The density of emitted directions where the map has `value`.
   double EmissionPdf(const EnvironmentValue& value) const;
 
   EnvironmentMap map_;
   EnvironmentOptions options_;
-  Vec3d axes_[3];  // the map's x, y and z in render space
+  LightFrame frame_;
   SceneExtent extent_;
 };
 

@@ -38,13 +38,6 @@ Vec2i Wrapped(EnvironmentMapping mapping, int x, int y, int width, int height) {
 /// (1 - cos theta) / 2 of a unit vector, without cancellation near +z.
 double HaversineOf(const Vec3d& w) { return w.z > 0 ? (w.x * w.x + w.y * w.y) / (2 * (1 + w.z)) : (1 - w.z) / 2; }
 
-Color Bilinear(const Color (&c)[4], const Vec2d& t) {
-  const float x = static_cast<float>(t.x), y = static_cast<float>(t.y);
-  return Lerp(y, Lerp(x, c[0], c[1]), Lerp(x, c[2], c[3]));
-}
-
-double Importance(const Color& c) { return static_cast<double>(c.MaxComponent()); }
-
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(const Image& image, EnvironmentMapping mapping, const Color& scale)
@@ -141,8 +134,7 @@ void EnvironmentMap::BuildTable() {
   table_ = Distribution2D(std::span<const double>(weights), columns, rows);
   Vec3d integral(0);
   for (const Vec3d& row : rowIntegrals) integral += row;
-  integral_ = Color(FiniteColor(Color(1), integral.x).r, FiniteColor(Color(1), integral.y).r,
-                    FiniteColor(Color(1), integral.z).r);
+  integral_ = FiniteColor(integral);
 }
 
 Vec2d EnvironmentMap::RowIntegrals(int y) const {

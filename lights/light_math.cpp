@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "src/base/numerics.h"
+
 namespace dapple {
 
 Color FiniteColor(const Color& c, double scale) {
@@ -9,6 +11,15 @@ Color FiniteColor(const Color& c, double scale) {
     constexpr double kLargest = std::numeric_limits<float>::max();
     return static_cast<float>(std::clamp(static_cast<double>(x) * scale, -kLargest, kLargest));
   });
+}
+
+Color FiniteColor(const Vec3d& sums) {
+  return {FiniteColor(Color(1), sums.x).r, FiniteColor(Color(1), sums.y).r, FiniteColor(Color(1), sums.z).r};
+}
+
+Color Bilinear(const Color (&c)[4], const Vec2d& t) {
+  const float x = static_cast<float>(t.x), y = static_cast<float>(t.y);
+  return Lerp(y, Lerp(x, c[0], c[1]), Lerp(x, c[2], c[3]));
 }
 
 std::optional<LiSample> SamplePointLi(const LightContext& at, const Vec3& origin, const Color& intensity) {

@@ -6,15 +6,15 @@
 #include "lights/distant_light.h"
 #include "lights/environment_light.h"
 #include "lights/equal_area_mapping.h"
+#include "lights/goniometric_light.h"
 #include "lights/point_light.h"
+#include "lights/projection_light.h"
 #include "lights/spot_light.h"
 #include "src/base/numerics.h"
 
 namespace dapple {
 
 namespace {
-
-const std::vector<std::string> kUnsupportedLights = {"goniometric", "projection"};
 
 /// The factor of a light's colour.
 Color GetScale(const Values& values, const Entity& light) {
@@ -88,6 +88,30 @@ double PbrtUpperIlluminance(const Image& map) {
   return sum * 2 * kPiD / (static_cast<double>(map.Width()) * map.Height());
 }
 
+/// The image that a light shines by, fit for it. Square in pbrt-v4 where it is of the sphere.
+Image ReadEmission(const Values& values, const Parameter& fileName, bool isOfSphere) {
+  const BuildContext& context = values.Context();
+  // Not through the cache, whose repair would put out an infinitely bright sun.
+  const Image file = ReadImage(values.FilePath(fileName), ColorEncoding::SRgb(), fileName.location);
+  if (isOfSphere && !context.IsV3() && file.Width() != file.Height())
+    throw Error(fileName.location,
+                fmt::format("environment map \"{}\" is of {} x {} pixels, expected a square one: pbrt-v4 maps are "
+                            "equal-area (octahedral), and \"imgtool makeequiarea\" makes them from latitude-longitude",
+                            fileName.strings[0], file.Width(), file.Height()));
+  int64_t repaired = 0;
+  Image image = EnvironmentMap::Repair(file, &repaired);
+  if (repaired > 0)
+    context.diagnostics.Warn(fileName.location,
+                             fmt::format("{} pixels of \"{}\" are no radiance (negative, infinite or "
+                                         "not a number) and were mended",
+                                         repaired, fileName.strings[0]));
+  return image;
+}
+
+EnvironmentMapping MappingOf(const BuildContext& context) {
+  return context.IsV3() ? EnvironmentMapping::LatLong : EnvironmentMapping::EqualArea;
+}
+
 /// Dapple's own parameters of infinite lights.
 EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
   EnvironmentOptions options;
@@ -105,26 +129,12 @@ std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescriptio
                                            const EnvironmentOptions& options) {
   const BuildContext& context = values.Context();
   const bool isV3 = context.IsV3();
-  // Not through the cache, whose repair would put out an infinitely bright sun.
-  const Image file = ReadImage(values.FilePath(fileName), ColorEncoding::SRgb(), fileName.location);
-  if (!isV3 && file.Width() != file.Height())
-    throw Error(fileName.location,
-                fmt::format("environment map \"{}\" is of {} x {} pixels, expected a square one: pbrt-v4 maps are "
-                            "equal-area (octahedral), and \"imgtool makeequiarea\" makes them from latitude-longitude",
-                            fileName.strings[0], file.Width(), file.Height()));
-  int64_t repaired = 0;
-  const Image map = EnvironmentMap::Repair(file, &repaired);
-  if (repaired > 0)
-    context.diagnostics.Warn(fileName.location,
-                             fmt::format("{} pixels of \"{}\" are no radiance (negative, infinite or "
-                                         "not a number) and were mended",
-                                         repaired, fileName.strings[0]));
+  const Image map = ReadEmission(values, fileName, true);
   Color scale = isV3 ? GetEmission(values, light, "L") : GetScale(values, light);
   if (!isV3 && light.params.Has("illuminance"))
     scale *= TargetFactor(context, light, "illuminance", PbrtUpperIlluminance(map));
   return std::make_unique<EnvironmentLight>(map, context.renderFromWorld * light.worldFromLight, scale,
-                                            isV3 ? EnvironmentMapping::LatLong : EnvironmentMapping::EqualArea,
-                                            options);
+                                            MappingOf(context), options);
 }
 
 std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& light) {
@@ -143,12 +153,70 @@ std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& lig
   return std::make_unique<UniformEnvironmentLight>(L);
 }
 
+/// `make(factor)` builds a light by an image; the factor is such that pbrt-v4's "power" is reached.
+template <typename Make>
+std::unique_ptr<Light> BuildToPower(const BuildContext& context, const LightDescription& light, const Color& factor,
+                                    Make make) {
+  double reached = 0;
+  if (!context.IsV3() && light.params.Has("power")) reached = static_cast<double>(make(Color(1))->Power().Luminance());
+  return make(factor * TargetFactor(context, light, "power", reached));
+}
+
+/// One white pixel where the light has no image.
+Image WhitePixel() { return {1, 1, {"Y"}, {1.f}}; }
+
+/// In pbrt-v4 the image of a goniometric light has no colours.
+Image AverageOfColors(const Image& image) {
+  Image gray(image.Width(), image.Height(), {"Y"});
+  for (int y = 0; y < image.Height(); ++y)
+    for (int x = 0; x < image.Width(); ++x) gray.At(x, y, 0) = image.ColorAt(x, y).Average();
+  return gray;
+}
+
+std::unique_ptr<Light> BuildGoniometric(Values& values, const LightDescription& light) {
+  const BuildContext& context = values.Context();
+  const Parameter* fileName = light.params.Find(context.IsV3() ? "mapname" : "filename");
+  Image image = fileName ? ReadEmission(values, *fileName, true) : WhitePixel();
+  if (!context.IsV3()) image = AverageOfColors(image);
+  // The map's z, around which its angles run, is the light's y.
+  const Transform lightFromMap = Transform::FromRows({1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1});
+  const Transform renderFromLight = context.renderFromWorld * light.worldFromLight;
+  const Vec3 position = ToFloat(renderFromLight.Point(Vec3d(0)));
+  return BuildToPower(context, light, GetEmission(values, light, "I"), [&](const Color& scale) {
+    return std::make_unique<GoniometricLight>(position, renderFromLight * lightFromMap, image, MappingOf(context),
+                                              scale);
+  });
+}
+
+std::unique_ptr<Light> BuildProjection(Values& values, const LightDescription& light) {
+  const BuildContext& context = values.Context();
+  const bool isV3 = context.IsV3();
+  const Parameter* fileName = light.params.Find(isV3 ? "mapname" : "filename");
+  if (!fileName && !isV3)
+    throw Error(light.location, "light \"projection\" has no image, expected \"filename\" to name one");
+  const Image image = fileName ? ReadEmission(values, *fileName, false) : WhitePixel();
+  const double fov = light.params.GetFloat("fov", isV3 ? 45 : 90);
+  // pbrt-v3 has the top of the image at -y.
+  const Transform lightFromMap = Transform::Scale({1, isV3 ? -1. : 1., 1});
+  const Transform renderFromLight = context.renderFromWorld * light.worldFromLight;
+  const Vec3 position = ToFloat(renderFromLight.Point(Vec3d(0)));
+  const Color factor = isV3 ? GetEmission(values, light, "I") : GetScale(values, light);
+  return BuildToPower(context, light, factor, [&](const Color& scale) {
+    return AtLocation(light.params.LocationOf("fov", light.location), [&] {
+      return std::make_unique<ProjectionLight>(position, renderFromLight * lightFromMap, image, fov, scale);
+    });
+  });
+}
+
 std::unique_ptr<Light> BuildKnownLight(Values& values, const LightDescription& light) {
   if (light.type == "point") return BuildPoint(values, light);
   if (light.type == "spot") return BuildSpot(values, light);
   if (light.type == "distant") return BuildDistant(values, light);
   if (light.type == "infinite" || light.type == "exinfinite") return BuildInfinite(values, light);
-  FailUnknownName(light.location, "light", light.type, {"point", "spot", "distant", "infinite"});
+  if (light.type == "projection") return BuildProjection(values, light);
+  if (light.type == "goniometric") return BuildGoniometric(values, light);
+  FailUnknownName(light.location, "light", light.type,
+                  {"point", "spot", "distant", "infinite", "projection", "goniometric"});
 }
 
 /// Image emission of pbrt-v4's area lights: over the shape's (u, v).
@@ -182,14 +250,8 @@ ShapeArea AreaOf(const Shape& shape) {
 }  // namespace
 
 std::unique_ptr<Light> BuildLight(Values& values, const LightDescription& light) {
-  const BuildContext& context = values.Context();
-  if (std::find(kUnsupportedLights.begin(), kUnsupportedLights.end(), light.type) != kUnsupportedLights.end()) {
-    context.diagnostics.Warn(light.location, fmt::format("light \"{}\" is not supported and left out", light.type));
-    light.params.IgnoreAll();
-    return nullptr;
-  }
   std::unique_ptr<Light> result = BuildKnownLight(values, light);
-  light.params.ReportUnused(context.diagnostics, {"nsamples", "samples"});
+  light.params.ReportUnused(values.Context().diagnostics, {"nsamples", "samples"});
   return result;
 }
 

@@ -2,7 +2,8 @@
 //
 // pbrt-v3: every light has a colour "scale". pbrt-v4: a number "scale"; spectra and black bodies are first brought to
 // luminance one, RGB is taken as it is; "power" (lumen, so to speak) then makes the light's colour, times its scale,
-// emit that much, and "illuminance" (of an infinite light: of its upper hemisphere, z > 0) shine that much on a plane.
+// emit that much (with an image: the image as it is lit), and "illuminance" (of an infinite light: of its upper
+// hemisphere, z > 0) shine that much on a plane.
 //
 // Dapple's own: infinite lights have a string "emission", "importance" (default) or "uniform", which says how the
 // directions of emitted photons are drawn (`EnvironmentEmission`); the light itself is the same.
@@ -16,7 +17,7 @@
 
 namespace dapple {
 
-/// Null, with a warning, for a kind that Dapple lacks. Throws `Error` at the place of what is wrong.
+/// Throws `Error` at the place of what is wrong.
 std::unique_ptr<Light> BuildLight(Values& values, const LightDescription& light);
 
 /// The light of a shape, which must outlive it. pbrt gives the

@@ -24,8 +24,7 @@ class Assembler {
 
   void AddLights() {
     for (const LightDescription& light : context_.description.lights)
-      if (std::unique_ptr<Light> built = AtLocation(light.location, [&] { return BuildLight(values_, light); }))
-        parts_->lights.push_back(std::move(built));
+      parts_->lights.push_back(AtLocation(light.location, [&] { return BuildLight(values_, light); }));
   }
 
   void AddShapes() {

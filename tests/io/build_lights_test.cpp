@@ -108,6 +108,88 @@ TEST(BuildLights, DistantLightsTravelFromFromToTo) {
   ExpectColor(Arriving(Lit(R"(LightSource "distant" "float illuminance" 50 "float scale" 2)", 4)).L, Color(100));
 }
 
+/// Four pixels: red upper left, green upper right, blue lower left, white lower right.
+void WriteFourColors(const std::filesystem::path& path) {
+  Image image = Image::Rgb(2, 2);
+  image.SetColor(0, 0, Color(1, 0, 0));
+  image.SetColor(1, 0, Color(0, 1, 0));
+  image.SetColor(0, 1, Color(0, 0, 1));
+  image.SetColor(1, 1, Color(1, 1, 1));
+  WriteExr(path.string(), image);
+}
+
+/// The intensity of the only light, which is at the world's (0, 0, -2), toward the world's `w`.
+Color IntensityToward(const Built& built, const Vec3d& w) {
+  const Vec3 p = ToFloat(built->RenderToWorld().Inverse().Point(Vec3d(0, 0, -2) + w));
+  const std::optional<LiSample> sample = built->Lights()[0]->Sample_Li(LightContext(p), {});
+  return sample ? sample->L * static_cast<float>(LengthSquared(w)) : Color();
+}
+
+// pbrt's light space is that of its camera: x to the right, y up, z ahead. Version 3 throws the image upside down.
+TEST(BuildLights, ProjectionsHaveTheirImageUpright) {
+  const TestFolder folder;
+  WriteFourColors(folder.Path() / "four.exr");
+  const auto lit = [&](const std::string& parameters, int version) {
+    return Lit("AttributeBegin Translate 0 0 -2 LightSource \"projection\" " + parameters + " AttributeEnd", version,
+               folder.Path());
+  };
+  const Built v4 = lit(R"("string filename" "four.exr" "float scale" 2)", 4);
+  // At 90 degrees the edges of the image are at 45 degrees; outside of the middles of the pixels it is of one colour.
+  ExpectColor(IntensityToward(v4, {-0.9, 0.9, 1}), Color(2, 0, 0));
+  ExpectColor(IntensityToward(v4, {0.9, 0.9, 1}), Color(0, 2, 0));
+  ExpectColor(IntensityToward(v4, {-0.9, -0.9, 1}), Color(0, 0, 2));
+  ExpectColor(IntensityToward(v4, {0.9, -0.9, 1}), Color(2, 2, 2));
+  ExpectColor(IntensityToward(v4, {1.01, 0, 1}), Color(0));
+  const Built v3 = lit(R"("string mapname" "four.exr" "rgb I" [1 2 3] "rgb scale" [2 2 2] "float fov" 90)", 3);
+  ExpectColor(IntensityToward(v3, {-0.9, -0.9, 1}), Color(2, 0, 0));
+  ExpectColor(IntensityToward(v3, {0.9, -0.9, 1}), Color(0, 4, 0));
+  ExpectColor(IntensityToward(v3, {-0.9, 0.9, 1}), Color(0, 0, 6));
+  ExpectColor(IntensityToward(v3, {0.9, 0.9, 1}), Color(2, 4, 6));
+  // Without an image: a white square, of 45 degrees.
+  const Built plain = lit(R"("rgb I" [1 2 3])", 3);
+  ExpectColor(IntensityToward(plain, {0.41, -0.41, 1}), Color(1, 2, 3));
+  ExpectColor(IntensityToward(plain, {0.42, 0, 1}), Color(0));
+  const Built power = lit(R"("string filename" "four.exr" "float power" 50 "float scale" 2)", 4);
+  EXPECT_NEAR(power->Lights()[0]->Power().Luminance(), 100, 1e-3);
+}
+
+// y is up in both versions; the equal-area image has it in its middle, the latitude-longitude one in its first row.
+TEST(BuildLights, GoniometricDiagramsAreUpright) {
+  const TestFolder folder;
+  Image square = Image::Rgb(16, 16), latLong = Image::Rgb(16, 8);
+  for (const int i : {7, 8})
+    for (const int j : {7, 8}) square.SetColor(i, j, Color(3, 3, 6));  // up
+  square.SetColor(15, 8, Color(9));                                    // +x (half a pixel away)
+  square.SetColor(8, 15, Color(12));                                   // +z
+  for (int x = 0; x < 16; ++x) latLong.SetColor(x, 0, Color(1, 2, 3));
+  for (const int y : {3, 4}) latLong.SetColor(4, y, Color(4, 5, 6)), latLong.SetColor(0, y, Color(7, 8, 9));
+  WriteExr((folder.Path() / "square.exr").string(), square);
+  WriteExr((folder.Path() / "lat.exr").string(), latLong);
+  const auto lit = [&](const std::string& parameters, int version) {
+    return Lit("AttributeBegin Translate 0 0 -2 LightSource \"goniometric\" " + parameters + " AttributeEnd", version,
+               folder.Path());
+  };
+  const Built v4 = lit(R"("string filename" "square.exr" "float scale" 2 "rgb I" [1 2 3])", 4);
+  ExpectColor(IntensityToward(v4, {0, 1, 0}), Color(8, 16, 24));  // the mean of the colours, 4, times I times scale
+  ExpectColor(IntensityToward(v4, {0, -1, 0}), Color(0));
+  EXPECT_GT(IntensityToward(v4, {1, 0, 0}).r, 4.f);
+  EXPECT_GT(IntensityToward(v4, {0, 0, 1}).r, IntensityToward(v4, {1, 0, 0}).r);
+  EXPECT_EQ(IntensityToward(v4, {-1, 0, 0}).r, 0.f);
+  EXPECT_EQ(IntensityToward(v4, {0, 0, -1}).r, 0.f);
+  const Built v3 = lit(R"("string mapname" "lat.exr" "rgb scale" [2 2 2])", 3);
+  ExpectColor(IntensityToward(v3, {0, 1, 0}), Color(2, 4, 6));
+  ExpectColor(IntensityToward(v3, {0, -1, 0}), Color(0));
+  // Column 4 begins at +z, column 0 at +x; rows 3 and 4 meet at the horizon.
+  const double turn = kPiD / 16;
+  ExpectColor(IntensityToward(v3, {-std::sin(turn), 0, std::cos(turn)}), Color(8, 10, 12));
+  ExpectColor(IntensityToward(v3, {std::cos(turn), 0, std::sin(turn)}), Color(14, 16, 18));
+  ExpectColor(IntensityToward(v3, {0, 0, -1}), Color(0));
+  const Built plain = lit("\"float power\" 60", 4);
+  ExpectColor(plain->Lights()[0]->Power(), Color(60), 1e-3);
+  const Built power = lit(R"("string filename" "square.exr" "float power" 60 "float scale" 2)", 4);
+  EXPECT_NEAR(power->Lights()[0]->Power().Luminance(), 120, 1e-3);
+}
+
 TEST(BuildLights, UniformEnvironments) {
   const Built v3 = Lit(R"(LightSource "infinite" "rgb L" [1 2 3] "rgb scale" [2 2 2])", 3);
   ExpectColor(Irradiance(v3), Color(2, 4, 6) * kPi, 0.01);
@@ -259,25 +341,27 @@ TEST(BuildLights, AreaLightsMayShowAnImage) {
   ExpectColor(seen(0.9), Color(0, 8, 0));
 }
 
-TEST(BuildLights, LightsInInstancesAndUnknownOnesWarn) {
+TEST(BuildLights, LightsInInstancesWarn) {
   EXPECT_EQ(
       BuildWorld("ObjectBegin \"a\" AreaLightSource \"diffuse\" Shape \"sphere\" ObjectEnd\nObjectInstance \"a\"", 4)
           .warnings.size(),
       1u);
-  EXPECT_EQ(BuildWorld("LightSource \"goniometric\"", 4).warnings,
-            std::vector<std::string>{"a.pbrt:5:1: warning: light \"goniometric\" is not supported and left out"});
   const Built dark = BuildText("WorldBegin\nShape \"sphere\"", 4);
   EXPECT_EQ(dark.warnings.size(), 1u);
 }
 
 TEST(BuildLights, ErrorsHaveAPlace) {
   EXPECT_EQ(WorldError(R"(LightSource "pont")", 4),
-            "a.pbrt:5:1: error: unknown light \"pont\", expected one of point, spot, distant, infinite; did you mean "
-            "\"point\"?");
+            "a.pbrt:5:1: error: unknown light \"pont\", expected one of point, spot, distant, infinite, "
+            "projection, goniometric; did you mean \"point\"?");
   EXPECT_EQ(WorldError(R"(LightSource "point" "rgb I" [1 -1 1])", 4),
             "a.pbrt:5:21: error: parameter \"I\" has a negative value, expected 0 or more");
   EXPECT_EQ(WorldError(R"(LightSource "distant" "point3 from" [0 0 1])", 4).substr(0, 17), "a.pbrt:5:1: error");
   EXPECT_EQ(WorldError(R"(LightSource "infinite" "string filename" "no.exr")", 4).substr(0, 18), "a.pbrt:5:24: error");
+  EXPECT_EQ(WorldError(R"(LightSource "projection")", 4).substr(0, 17), "a.pbrt:5:1: error");
+  EXPECT_EQ(WorldError(R"(LightSource "projection" "float fov" 180)", 3),
+            "a.pbrt:5:26: error: field of view of a projection is 180 degrees, expected at least 0.0001 and less than "
+            "180");
   EXPECT_EQ(WorldError(R"(AreaLightSource "defuse" Shape "sphere")", 4).substr(0, 17), "a.pbrt:5:1: error");
   EXPECT_EQ(WorldError(R"(LightSource "point" "blackbody I" [3000 4000])", 4).substr(0, 18), "a.pbrt:5:21: error");
 }

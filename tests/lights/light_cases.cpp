@@ -3,7 +3,9 @@
 #include "lights/area_light.h"
 #include "lights/distant_light.h"
 #include "lights/environment_light.h"
+#include "lights/goniometric_light.h"
 #include "lights/point_light.h"
+#include "lights/projection_light.h"
 #include "lights/spot_light.h"
 #include "src/geometry/bilinear_mesh.h"
 #include "src/geometry/cylinder.h"
@@ -30,6 +32,29 @@ class StripedTexture final : public ColorTexture {
 };
 
 Transform SomeRotation() { return Transform::Rotate(40, {1, 2, 3}) * Transform::Scale({1, -1, 1}); }
+
+void AddImagePointLights(std::vector<LightCase>* cases) {
+  const Vec3 position(1, 0, 2);
+  const auto add = [&](const std::string& name, std::unique_ptr<Light> light) {
+    cases->push_back({name, nullptr, std::move(light)});
+  };
+  const auto projection = [&](const std::string& name, const Image& image, double fov) {
+    // Looks down on the scene, a little aslant.
+    const Transform down = Transform::Rotate(170, {1, 0.2, 0}) * Transform::Scale({2, -2, 2});
+    add("projection " + name, std::make_unique<ProjectionLight>(position, down, image, fov, Color(1, 0.5f, 2)));
+  };
+  projection("narrow", RandomEnvironment(12, 9, 4), 5);
+  projection("wide", RandomEnvironment(16, 9, 5), 60);
+  projection("upright of few pixels", RandomEnvironment(2, 3, 6), 120);
+  projection("of one pixel", Image(1, 1, {"Y"}, {2.f}), 150);
+  const auto goniometric = [&](const std::string& name, const Image& image, EnvironmentMapping mapping) {
+    add("goniometric " + name,
+        std::make_unique<GoniometricLight>(position, SomeRotation(), image, mapping, Color(1, 0.5f, 2)));
+  };
+  goniometric("lat-long", RandomEnvironment(16, 8, 7), EnvironmentMapping::LatLong);
+  goniometric("equal-area", RandomEnvironment(8, 8, 8), EnvironmentMapping::EqualArea);
+  goniometric("of one pixel", Image(1, 1, {"Y"}, {2.f}), EnvironmentMapping::EqualArea);
+}
 
 void AddAreaLights(std::vector<LightCase>* cases) {
   const auto add = [&](const std::string& name, std::unique_ptr<Shape> shape, bool twoSided, bool textured = false) {
@@ -114,6 +139,7 @@ std::vector<LightCase> AllLights() {
   add("equal-area environment, uniform emission",
       std::make_unique<EnvironmentLight>(RandomEnvironment(8, 8, 3), SomeRotation(), Color(1), Mapping::EqualArea,
                                          EnvironmentOptions{EnvironmentEmission::Uniform}));
+  AddImagePointLights(&cases);
   AddAreaLights(&cases);
   for (LightCase& c : cases) c.light->Prepare(kTestExtent);
   return cases;
