@@ -24,17 +24,20 @@ struct LastScattering {
   float pdf = 0;  ///< per solid angle, of the direction taken
 };
 
-/// Radiance that the path's last ray runs into, weighted against light sampling by the power heuristic. `hit` is null
-/// where the ray left the scene.
-Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last);
+/// Radiance that the path's last ray runs into, weighted against light sampling by the power heuristic (unless `direct`
+/// leaves all to one of the two). `hit` is null where the ray left the scene.
+Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last,
+                   const DirectLighting& direct = {});
 
-/// Radiance scattered at `hit` toward `hit.wo` of light sampled at one light, weighted against BSDF sampling by the
-/// power heuristic. Takes three numbers of the sampler.
-Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, Sampler& sampler,
-                        PassStats& stats);
+/// Radiance scattered at `hit` toward `hit.wo` of light that is sampled at the lights, weighted against BSDF sampling
+/// by the power heuristic. `at` as `ContextOf` gives it. Takes three numbers of the sampler; more samples than one take
+/// the branches of its block.
+Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
+                        Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
-/// Where light is asked for, as lights see it.
-LightContext ContextOf(const SurfaceInteraction& hit, const Bsdf& bsdf);
+/// Where light is asked for, as lights see it: for both of the above.
+LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
+                       const DirectLighting& direct = {});
 
 /// True where `path` still has its share of energy after Russian roulette; scales its throughput. `etaScale` undoes the
 /// change of radiance by refraction, which comes back when the path leaves the medium (pbrt-v4, section 14.5.4).

@@ -32,12 +32,30 @@ struct PassStats {
   PassStats& operator+=(const PassStats& s);
 };
 
+/// Whose directions find direct light where a camera path scatters. Light of delta lights is sampled in any case.
+enum class DirectTechnique {
+  Mis,    ///< the lights' and the BSDF's, joined by multiple importance sampling
+  Light,  ///< the lights' alone: next-event estimation
+  Bsdf,   ///< the BSDF's alone
+};
+
+/// How camera paths find direct light.
+struct DirectLighting {
+  DirectTechnique technique = DirectTechnique::Mis;
+  /// Next-event samples at each vertex, over all lights. Absent: one light is picked, and gets `Light::SampleCount()`.
+  std::optional<int> lightSamples;
+
+  /// Next-event samples at a vertex where this light is picked.
+  int SamplesOf(const Light& light) const { return lightSamples.value_or(light.SampleCount()); }
+};
+
 /// What the user may set; absent values follow from the scene.
 struct IntegratorOptions {
   int maxDepth = 32;                  ///< scattering events on a path from light to camera
   std::optional<int> photonsPerPass;  ///< light paths a pass
   std::optional<double> radius;       ///< starting radius of density estimates, in scene units
   double radiusInPixels = 1;          ///< the same in footprints of a pixel, where `radius` is absent
+  DirectLighting direct;
 };
 
 class Integrator {

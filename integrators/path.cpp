@@ -27,7 +27,7 @@ Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) cons
   for (int scattered = 0;;) {
     ++stats.cameraRays;
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
-    radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last);
+    radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, direct_);
     if (!hit) return radiance;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
@@ -43,13 +43,15 @@ Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) cons
     const Vec2d uDirection = sampler.Get2D();
     const double uLobe = sampler.Get1D();
     const double uRoulette = sampler.Get1D();
-    if (!bsdf.IsPurelySpecular()) radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, sampler, stats);
+    const LightContext at = ContextOf(*scene_, *hit, bsdf, direct_);
+    if (!bsdf.IsPurelySpecular())
+      radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, direct_);
 
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
     if (!next) return radiance;
     throughput *= next->weight;
     etaScale *= next->eta * next->eta;
-    last = {next->IsSpecular(), ContextOf(*hit, bsdf), next->pdf};
+    last = {next->IsSpecular(), at, next->pdf};
     ray = SpawnRay(*hit, next->wi);
     constexpr int kSureBounces = 3;
     if (scattered > kSureBounces && !SurvivesRoulette(uRoulette, etaScale, &throughput)) return radiance;

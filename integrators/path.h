@@ -10,7 +10,7 @@ namespace dapple {
 
 class PathIntegrator final : public Integrator {
  public:
-  explicit PathIntegrator(const IntegratorOptions& options) : maxDepth_(options.maxDepth) {}
+  explicit PathIntegrator(const IntegratorOptions& options) : maxDepth_(options.maxDepth), direct_(options.direct) {}
 
   std::string_view Name() const override { return "path"; }
   void Prepare(const Scene& scene, uint64_t seed) override;
@@ -21,6 +21,7 @@ class PathIntegrator final : public Integrator {
   Color Radiance(Ray ray, Sampler& sampler, PassStats& stats) const;
 
   int maxDepth_;
+  DirectLighting direct_;
   const Scene* scene_ = nullptr;
   uint64_t seed_ = 0;
 };

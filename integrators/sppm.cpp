@@ -98,7 +98,7 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
     // Sources that a glossy surface sees by specular ones reach it as caustic photons.
     if (!isBehindGlossy || !last.isSpecular)
-      radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last);
+      radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, options_.direct);
     if (!hit) return radiance;
     distance += hit->t;
     const Material* material = scene_->MaterialAt(*hit);
@@ -116,8 +116,9 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
     const double uLobe = sampler.Get1D();
     const double uRoulette = sampler.Get1D();
     const bool isGlossy = IsGlossy(bsdf);
+    const LightContext at = ContextOf(*scene_, *hit, bsdf, options_.direct);
     if (!bsdf.IsPurelySpecular()) {
-      radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, sampler, stats);
+      radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
       const double footprint = camera.footprintAtLens + camera.footprintSpread * distance;
       const double radius = options_.radius.value_or(options_.radiusInPixels * footprint) * photons.radiusFactor;
       radiance +=
@@ -129,7 +130,7 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
     if (!next) return radiance;
     throughput *= next->weight;
     etaScale *= next->eta * next->eta;
-    last = {next->IsSpecular(), ContextOf(*hit, bsdf), next->pdf};
+    last = {next->IsSpecular(), at, next->pdf};
     if (!last.isSpecular) {
       isBehindGlossy |= isGlossy;
       // Where all photons were gathered, only light straight from its source is left to find.

@@ -7,8 +7,10 @@
 // |cos| / (pdfPos pdfDir) over emitted rays is `Power()`, where cos = 1 without a surface.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "src/base/color.h"
 #include "src/geometry/interaction.h"
@@ -16,16 +18,41 @@
 
 namespace dapple {
 
+class Bsdf;
+class Light;
+
+/// What a light has worked out for one receiver, whose scattering it was shown: see `Light::PrepareReceiver`.
+struct ReceiverTable {
+  explicit ReceiverTable(const Light* of) : light(of) {}
+  ReceiverTable(const ReceiverTable&) = delete;
+  ReceiverTable& operator=(const ReceiverTable&) = delete;
+  virtual ~ReceiverTable() = default;
+
+  const Light* light;
+};
+
 /// Where light is asked for. Light from behind an opaque surface (not transmissive, `n` not zero) does not count: a
 /// light may leave it out of its importance and of what it draws.
 struct LightContext {
   Vec3 p;
   Vec3 n{0, 0, 0};  ///< geometric normal, turned to the side that is looked from; zero where there is no surface
   bool transmissive = false;  ///< light from behind counts too
+  /// The BSDF draws directions too, and both kinds are weighted against each other (multiple importance sampling): the
+  /// light may leave to it what it finds well. Else the density of what the light draws is positive wherever its light
+  /// comes from.
+  bool bsdfDrawsToo = false;
+  std::vector<std::shared_ptr<const ReceiverTable>> tables;  ///< of the lights that want one
 
   explicit LightContext(const Vec3& point) : p(point) {}
   LightContext(const Vec3& point, const Vec3& normal, bool isTransmissive)
       : p(point), n(normal), transmissive(isTransmissive) {}
+
+  /// The table that `light` has made for this receiver, or null.
+  const ReceiverTable* TableOf(const Light* light) const {
+    for (const auto& table : tables)
+      if (table->light == light) return table.get();
+    return nullptr;
+  }
 };
 
 /// Light that may arrive at a point.
@@ -102,6 +129,18 @@ class Light {
   /// between.
   virtual double ImportanceAt(const LightContext&) const { return static_cast<double>(Power().MaxComponent()); }
 
+  /// True where `Sample_Li` would rather know how the receiver scatters: then `PrepareReceiver` is to be called before.
+  virtual bool WantsReceiver() const { return false; }
+  /// The table that belongs into `at.tables` where light that comes to `at` is scattered toward the unit vector `wo` by
+  /// `bsdf`; or null. `Sample_Li`, `Pdf_Li` and `Invert_Li` speak of the same density only with the same tables.
+  virtual std::shared_ptr<const ReceiverTable> PrepareReceiver(const LightContext& /*at*/, const Bsdf& /*bsdf*/,
+                                                               const Vec3& /*wo*/) const {
+    return nullptr;
+  }
+  /// How many directions next-event estimation draws where it has picked this light; at least 1.
+  int SampleCount() const { return sampleCount_; }
+  void SetSampleCount(int count) { sampleCount_ = count; }
+
   /// A direction toward the light; nothing where none of its light arrives (whatever stands between).
   virtual std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const = 0;
   /// The density with which `Sample_Li` gives the direction `wi`, per solid angle. `hit` is the point of the light that
@@ -123,6 +162,9 @@ class Light {
   virtual Color Le(const Ray&) const { return Color(); }
   /// Radiance that an area light sends from the point `hit` along the unit vector `w`; black for others.
   virtual Color L(const SurfaceInteraction&, const Vec3& /*w*/) const { return Color(); }
+
+ private:
+  int sampleCount_ = 1;
 };
 
 }  // namespace dapple

@@ -19,6 +19,8 @@ namespace dapple {
 
 namespace {
 
+constexpr int kMaxLightSamples = 1 << 16;
+
 /// The numbers of `text`, which `separator` parts; nothing where it holds anything else.
 template <typename T>
 std::optional<std::vector<T>> SplitNumbers(const std::string& text, char separator) {
@@ -59,6 +61,13 @@ std::array<double, 4> ParseCrop(const std::string& text) {
         "--crop", fmt::format("expected x0,x1,y0,y1 as fractions of the picture, 0 <= x0 < x1 <= 1, not '{}'", text));
   }
   return {(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
+}
+
+DirectTechnique ParseDirect(const std::string& text) {
+  if (text == "mis") return DirectTechnique::Mis;
+  if (text == "light") return DirectTechnique::Light;
+  if (text == "bsdf") return DirectTechnique::Bsdf;
+  throw CLI::ValidationError("--direct", fmt::format("expected mis, light or bsdf, not '{}'", text));
 }
 
 void AddSceneGroup(CLI::App* command, SceneOptions* options) {
@@ -113,6 +122,19 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
   command->add_option("--radius", options->radius, "Starting radius of photon lookups, in the scene's units")
       ->check(CheckPositive)
       ->type_name("R")
+      ->group(group);
+  command
+      ->add_option("--light-samples", options->lightSamples,
+                   "Next-event samples at each vertex of a camera path; by default 1, or an infinite light's own "
+                   "\"samples\"")
+      ->check(CLI::Range(1, kMaxLightSamples).description(""))
+      ->type_name("N")
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--direct", [options](const std::string& text) { options->direct = ParseDirect(text); },
+          "What finds direct light on camera paths: mis (light and BSDF sampling, weighted), light or bsdf (alone)")
+      ->type_name("TECHNIQUE")
       ->group(group);
   command
       ->add_option("--threads", options->threads,
@@ -176,6 +198,7 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
   plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
   plan.options.radius = Either(options.radius, settings.radius);
+  plan.options.direct = {options.direct, options.lightSamples};
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);
   plan.seed = Either(options.seed, settings.seed).value_or(0);
   SetBudget(settings, options, &plan);

@@ -35,6 +35,8 @@ struct SceneOptions {
   std::optional<int> maxDepth;
   std::optional<int> photons;
   std::optional<double> radius;
+  std::optional<int> lightSamples;
+  DirectTechnique direct = DirectTechnique::Mis;
   int threads = 0;  ///< 0: one a processor
 
   void AddTo(CLI::App* command);

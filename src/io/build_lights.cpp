@@ -137,6 +137,16 @@ std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescriptio
                                             MappingOf(context), options);
 }
 
+/// Next-event samples of an infinite light, as pbrt-v3 spells them.
+int GetSampleCount(const LightDescription& light) {
+  const char* const name = light.params.Has("samples") ? "samples" : "nsamples";
+  const int count = light.params.GetInt(name, 1);
+  if (count < 1)
+    throw Error(light.params.LocationOf(name, light.location),
+                fmt::format("parameter \"{}\" is {}, expected 1 or more", name, count));
+  return count;
+}
+
 std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& light) {
   const BuildContext& context = values.Context();
   if (const Parameter* portal = light.params.Find("portal"))
@@ -251,6 +261,7 @@ ShapeArea AreaOf(const Shape& shape) {
 
 std::unique_ptr<Light> BuildLight(Values& values, const LightDescription& light) {
   std::unique_ptr<Light> result = BuildKnownLight(values, light);
+  if (result->IsInfinite()) result->SetSampleCount(GetSampleCount(light));
   light.params.ReportUnused(values.Context().diagnostics, {"nsamples", "samples"});
   return result;
 }

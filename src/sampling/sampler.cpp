@@ -87,8 +87,17 @@ Sampler Sampler::ForLightPath(uint64_t seed, int64_t path, int pass, int64_t pat
   return {Hash(seed, kLight, pass & 1, index >> 32), static_cast<uint32_t>(index)};
 }
 
+Sampler Sampler::Branch(int i, int count) const {
+  constexpr int kBranches = 1 << 20;  // beyond the blocks of any path
+  Sampler branch = *this;
+  branch.index_ = index_ * static_cast<uint32_t>(count) + static_cast<uint32_t>(i);
+  branch.StartBlock(block_ + kBranches);
+  return branch;
+}
+
 void Sampler::StartBlock(int block) {
   next_ = 0;
+  block_ = block;
   const uint64_t blockSeed = MixBits(seed_ + static_cast<uint64_t>(block) * 0x9e3779b97f4a7c15ull);
   // The points of a block keep their sequence's order but for an Owen scramble of the index, which leaves every aligned
   // run of 2^k points together: each stays a net. Block 0 is not shuffled.

@@ -26,6 +26,10 @@ class Sampler {
   /// Moves to the first dimension of a block. A new sampler stands at block 0.
   void StartBlock(int block);
 
+  /// A sampler for number `i` of `count` samples that are taken at the current block, of a sequence that only they use:
+  /// the `count` (best a power of two) of one path are stratified against each other, and so are those of all paths.
+  Sampler Branch(int i, int count) const;
+
   /// The next number of the block, in [0, 1), a multiple of 2^-32. At most eight a block.
   double Get1D() { return points_[static_cast<size_t>(next_++)] * 0x1p-32; }
   Vec2d Get2D() {
@@ -38,6 +42,7 @@ class Sampler {
 
   uint64_t seed_;   // of the sequence: what it is for, and the replicate
   uint32_t index_;  // of the point in it
+  int block_ = 0;
   int next_ = 0;
   alignas(32) std::array<uint32_t, kBlockDimensions> points_;
 };

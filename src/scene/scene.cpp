@@ -100,8 +100,10 @@ void Scene::PrepareLights() {
   lights_ = std::move(emitting);
   for (ScenePrimitive& primitive : primitives_)
     if (primitive.light >= 0) primitive.light = newIndex[static_cast<size_t>(primitive.light)];
-  for (size_t i = 0; i < lights_.size(); ++i)
+  for (size_t i = 0; i < lights_.size(); ++i) {
     if (lights_[i]->IsInfinite()) infiniteLights_.push_back(static_cast<int>(i));
+    if (lights_[i]->WantsReceiver()) lightsThatWantReceivers_.push_back(lights_[i].get());
+  }
   picker_ = std::make_unique<LightPicker>(lights_);
 }
 

@@ -62,6 +62,8 @@ class Scene {
   const std::vector<std::unique_ptr<Light>>& Lights() const { return lights_; }
   /// The places in `Lights()` of those that rays find by leaving the scene.
   const std::vector<int>& InfiniteLights() const { return infiniteLights_; }
+  /// Those that want to know how a receiver scatters (`Light::WantsReceiver`): seldom any.
+  const std::vector<const Light*>& LightsThatWantReceivers() const { return lightsThatWantReceivers_; }
   /// Chooses among `Lights()`, by their places there.
   const LightPicker& Picker() const { return *picker_; }
   const Camera& GetCamera() const { return *camera_; }
@@ -83,6 +85,7 @@ class Scene {
   std::vector<std::unique_ptr<Material>> materials_;
   std::vector<std::unique_ptr<Light>> lights_;
   std::vector<int> infiniteLights_;
+  std::vector<const Light*> lightsThatWantReceivers_;
   std::unique_ptr<Camera> camera_;
   RenderSettings settings_;
   Transform renderToWorld_;

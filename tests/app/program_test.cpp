@@ -62,6 +62,8 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
                                 "tiny.pbrt --resolution 4x4y",
                                 "tiny.pbrt --resolution 65537x1",
                                 "tiny.pbrt --crop 0,1,0",
+                                "tiny.pbrt --light-samples 0",
+                                "tiny.pbrt --direct both",
                                 "tiny.pbrt --crop 0.5,0.5,0,1",
                                 "tiny.pbrt --crop 0,2,0,1",
                                 "tiny.pbrt --integrator none",

@@ -139,6 +139,27 @@ TEST(SphereLight, IrradianceStraightBelow) {
     ExpectRadiance(MeanRadiance(scene, integrator, 64, options), exact, 1e-4);
 }
 
+// Whichever way direct light is found, and with however many samples: the light of a wide sphere light and of a dim sky
+// on the plane below, pi (0.8 (1/2)^2 + 0.1 (3/4)) / pi of it sent back by an albedo of one half.
+TEST(DirectLight, TechniquesAndSampleCountsAgree) {
+  const std::string scene = Header("0 0 0.5  0 0.001 0  0 1 0", 1) +
+                            "LightSource \"infinite\" \"rgb L\" [.1 .1 .1] \"integer samples\" 3 AttributeBegin "
+                            "AreaLightSource \"diffuse\" \"rgb L\" [.8 .8 .8] Material \"matte\" \"rgb Kd\" [0 0 0] "
+                            "Translate 0 0 2 Shape \"sphere\" \"float radius\" [1] AttributeEnd "
+                            "Material \"matte\" \"rgb Kd\" [.5 .5 .5] Shape \"disk\" \"float radius\" [50] WorldEnd";
+  const double exact = 0.5 * (0.8 * 0.25 + 0.1 * 0.75);
+  for (const DirectTechnique technique : {DirectTechnique::Mis, DirectTechnique::Light, DirectTechnique::Bsdf})
+    for (const std::optional<int> lightSamples : {std::optional<int>(), std::optional(1), std::optional(5)}) {
+      IntegratorOptions options;
+      options.direct = {technique, lightSamples};
+      options.photonsPerPass = 100;
+      ExpectRadiance(MeanRadiance(scene, "path", 64, options), exact, 1e-4);
+      // The same functions serve both algorithms: one case is enough.
+      if (technique == DirectTechnique::Light && lightSamples == 5)
+        ExpectRadiance(MeanRadiance(scene, "sppm", 32, options), exact, 1e-4);
+    }
+}
+
 // A sphere that shines to its outside only is dark inside, though all of its points are next to shining ones.
 TEST(SphereLight, IsDarkInside) {
   const std::string scene =

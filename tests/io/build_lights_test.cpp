@@ -197,6 +197,13 @@ TEST(BuildLights, UniformEnvironments) {
   ExpectColor(Irradiance(v4), Color(7), 0.01);
 }
 
+TEST(BuildLights, SamplesOfInfiniteLights) {
+  EXPECT_EQ(Lit(R"(LightSource "infinite" "integer samples" 16)", 3)->Lights()[0]->SampleCount(), 16);
+  EXPECT_EQ(Lit(R"(LightSource "infinite" "integer nsamples" 4)", 3)->Lights()[0]->SampleCount(), 4);
+  EXPECT_EQ(Lit(R"(LightSource "infinite")", 4)->Lights()[0]->SampleCount(), 1);
+  EXPECT_THROW(Lit(R"(LightSource "infinite" "integer samples" 0)", 3), Error);
+}
+
 TEST(BuildLights, EnvironmentMapsOfBothVersions) {
   const TestFolder folder;
   Image latLong = Image::Rgb(32, 16), square = Image::Rgb(16, 16);

@@ -33,6 +33,30 @@ TEST(Sampler, FirstTwoDimensionsOfEveryBlockAreNets) {
     }
 }
 
+// The samples that one path branches into are stratified, and so are those of many paths together; the branches of two
+// vertices are independent of each other and of the path's own numbers.
+TEST(Sampler, BranchesAreNetsOfTheirOwn) {
+  constexpr int kBranches = 16;
+  double own = 0, other = 0;
+  std::vector<Vec2d> points;
+  for (int i = 0; i < 64; ++i) {
+    Sampler sampler = Sampler::ForPixel(3, {5, 9}, 2 * i), next = sampler;
+    sampler.StartBlock(2);
+    next.StartBlock(3);
+    std::vector<Vec2d> branches;
+    for (int j = 0; j < kBranches; ++j) {
+      branches.push_back(sampler.Branch(j, kBranches).Get2D());
+      other += (branches.back().x - 0.5) * (next.Branch(j, kBranches).Get1D() - 0.5);
+    }
+    own += (branches[0].x - 0.5) * (sampler.Get1D() - 0.5);
+    ExpectNet(branches);
+    points.insert(points.end(), branches.begin(), branches.end());
+  }
+  ExpectNet(points);
+  EXPECT_LT(std::abs(own / 64 * 12) * std::sqrt(64), 4.5);
+  EXPECT_LT(std::abs(other / 1024 * 12) * std::sqrt(1024), 4.5);
+}
+
 TEST(Sampler, LightPathsOfSuccessivePassesContinueOneSequence) {
   std::vector<Vec2d> points;
   for (int pass : {0, 2, 4, 6})
