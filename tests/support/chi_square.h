@@ -122,7 +122,7 @@ size_t CellOf(const Coordinates<D>& x, const std::array<int, D>& cells, size_t c
 template <int D, typename Sample, typename Density>
 ChiSquare ChiSquareOnCube(const Sample& sample, const Density& density, const std::array<int, D>& cells, int samples,
                           uint64_t seed) {
-  constexpr int kDepth = D <= 2 ? 12 : 10;
+  constexpr int kDepth = D <= 2 ? 15 : 12;
   size_t count = 1;
   for (const int n : cells) count *= static_cast<size_t>(n);
   std::vector<double> probability(count), observed(count + 1);
