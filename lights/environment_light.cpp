@@ -9,7 +9,9 @@ namespace dapple {
 
 EnvironmentLight::EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale,
                                    Mapping mapping, const EnvironmentOptions& options)
-    : map_(image, mapping, scale), options_(options), frame_(lightToRender) {}
+    : map_(image, mapping, scale), options_(options), frame_(lightToRender) {
+  if (!map_.IsBlack()) strategy_ = MakeStrategy(options.sampling, {this, map_, frame_});
+}
 
 Color EnvironmentLight::Power() const { return FiniteColor(map_.Integral(), EmissionDisk(extent_, {0, 0, 1}).area); }
 
@@ -21,20 +23,22 @@ double EnvironmentLight::ImportanceAt(const LightContext&) const {
 std::optional<LiSample> EnvironmentLight::Sample_Li(const LightContext& at, const LiRandom& u) const {
   if (map_.IsBlack()) return std::nullopt;
   LiSample sample;
-  sample.wi = ToRender(map_.Sample(u.direction));
+  sample.wi = strategy_ ? strategy_->Sample(at, u) : ToRender(map_.Sample(u.direction));
   const EnvironmentValue value = map_.Evaluate(ToMap(sample.wi));
-  if (value.pdf == 0 || value.L.IsBlack()) return std::nullopt;
+  sample.pdf = strategy_ ? strategy_->Pdf(at, sample.wi) : value.pdf;
+  if (sample.pdf == 0) return std::nullopt;
   sample.L = value.L;
-  sample.pdf = value.pdf;
   sample.p = PointOutside(extent_, at.p, sample.wi);
   return sample;
 }
 
-double EnvironmentLight::Pdf_Li(const LightContext&, const Vec3& wi, const SurfaceInteraction*) const {
+double EnvironmentLight::Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
+  if (strategy_) return strategy_->Pdf(at, wi);
   return map_.Evaluate(ToMap(wi)).pdf;
 }
 
-LiRandom EnvironmentLight::Invert_Li(const LightContext&, const Vec3& wi, const SurfaceInteraction*) const {
+LiRandom EnvironmentLight::Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
+  if (strategy_) return strategy_->Invert(at, wi);
   LiRandom u;
   if (!map_.IsBlack()) u.direction = map_.Invert(ToMap(wi));
   return u;

@@ -1,11 +1,12 @@
 // Light from all around: an image of the environment, or one radiance from everywhere.
 //
-// pbrt: `LightSource "infinite"`. One table gives the directions both of `Sample_Li` and of `Sample_Le`; emitted rays
-// start on a disk across the scene (emission_disk.h), so that the power is the integral of L(w) A(w). For comparison,
-// emission may draw its directions evenly instead.
+// pbrt: `LightSource "infinite"`. One table gives the directions both of `Sample_Li` (unless another strategy is
+// chosen, environment_strategy.h) and of `Sample_Le`; emitted rays start on a disk across the scene (emission_disk.h),
+// so that the power is the integral of L(w) A(w). For comparison, emission may draw its directions evenly instead.
 #pragma once
 
 #include "lights/environment_map.h"
+#include "lights/environment_strategy.h"
 #include "lights/light.h"
 #include "lights/light_frame.h"
 
@@ -20,6 +21,7 @@ enum class EnvironmentEmission {
 /// How an environment is sampled.
 struct EnvironmentOptions {
   EnvironmentEmission emission = EnvironmentEmission::Importance;
+  EnvironmentSampling sampling = EnvironmentSampling::Importance;  ///< of `Sample_Li`
 };
 
 class EnvironmentLight final : public Light {
@@ -29,6 +31,8 @@ class EnvironmentLight final : public Light {
   /// `image` as `EnvironmentMap` takes it; `EnvironmentMap::Repair` makes it so. `lightToRender` as for `LightFrame`.
   EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale, Mapping mapping,
                    const EnvironmentOptions& options = {});
+  EnvironmentLight(const EnvironmentLight&) = delete;
+  EnvironmentLight& operator=(const EnvironmentLight&) = delete;
 
   std::string_view Name() const override { return "infinite"; }
   bool IsInfinite() const override { return true; }
@@ -46,6 +50,12 @@ class EnvironmentLight final : public Light {
 
   Color Le(const Ray& ray) const override;
 
+  bool WantsReceiver() const override { return strategy_ && strategy_->WantsReceiver(); }
+  std::shared_ptr<const ReceiverTable> PrepareReceiver(const LightContext&, const Bsdf& bsdf,
+                                                       const Vec3& wo) const override {
+    return strategy_ ? strategy_->PrepareReceiver(bsdf, wo) : nullptr;
+  }
+
   /// The map in its own space.
   const EnvironmentMap& Map() const { return map_; }
 
@@ -58,6 +68,7 @@ class EnvironmentLight final : public Light {
   EnvironmentMap map_;
   EnvironmentOptions options_;
   LightFrame frame_;
+  std::unique_ptr<EnvironmentStrategy> strategy_;  // of `Sample_Li`; null: the map's own density
   SceneExtent extent_;
 };
 

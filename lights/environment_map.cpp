@@ -48,7 +48,9 @@ EnvironmentMap::EnvironmentMap(const Image& image, EnvironmentMapping mapping, c
                 " pixels: expected a square image in the equal-area mapping");
   }
   FillLattice(image, scale);
-  BuildTable();
+  FillHaversines();
+  base_ = MakeDensity(0);
+  integral_ = IntegrateRadiance();
 }
 
 Image EnvironmentMap::Repair(const Image& image, int64_t* repairedPixels) {
@@ -104,37 +106,57 @@ void EnvironmentMap::FillLattice(const Image& image, const Color& scale) {
   });
 }
 
-void EnvironmentMap::BuildTable() {
-  if (mapping_ == EnvironmentMapping::LatLong) {
-    for (int j = 0; j < height_ + 2; ++j) haversine_.push_back(Sqr(std::sin(kPiD / 2 * LatticeY(j))));
-    haversine_.back() = 1;
-  }
+void EnvironmentMap::FillHaversines() {
+  if (mapping_ != EnvironmentMapping::LatLong) return;
+  for (int j = 0; j < height_ + 2; ++j) haversine_.push_back(Sqr(std::sin(kPiD / 2 * LatticeY(j))));
+  haversine_.back() = 1;
+}
+
+std::vector<double> EnvironmentMap::CellWeights(double threshold) const {
   const int columns = width_ + 1, rows = height_ + 1;
   std::vector<double> weights(static_cast<size_t>(columns) * static_cast<size_t>(rows));
-  std::vector<Vec3d> rowIntegrals(static_cast<size_t>(rows));
   ParallelForChunks(rows, kRowsPerChunk, [&](int64_t begin, int64_t end) {
     for (int y = static_cast<int>(begin); y < end; ++y) {
       const Vec2d integrals = RowIntegrals(y);
-      Vec3d sum(0);
       for (int x = 0; x < columns; ++x) {
         const double halfWidth = (LatticeX(x + 1) - LatticeX(x)) / 2;
-        const double top = halfWidth * integrals.x, bottom = halfWidth * integrals.y;
         double w[4];
-        Weights({x, y}, w);
+        Weights({x, y}, threshold, w);
         weights[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)] =
-            top * (w[0] + w[1]) + bottom * (w[2] + w[3]);
+            halfWidth * (integrals.x * (w[0] + w[1]) + integrals.y * (w[2] + w[3]));
+      }
+    }
+  });
+  return weights;
+}
+
+EnvironmentDensity EnvironmentMap::MakeDensity(double threshold) const {
+  const Vec2i cells = Cells();
+  return {Distribution2D(std::span<const double>(CellWeights(threshold)), cells.x, cells.y), threshold};
+}
+
+double EnvironmentMap::MeanImportance() const { return base_.table.Sum() / (4 * kPiD); }
+
+Color EnvironmentMap::IntegrateRadiance() const {
+  std::vector<Vec3d> rowIntegrals(static_cast<size_t>(height_ + 1));
+  ParallelForChunks(height_ + 1, kRowsPerChunk, [&](int64_t begin, int64_t end) {
+    for (int y = static_cast<int>(begin); y < end; ++y) {
+      const Vec2d integrals = RowIntegrals(y);
+      Vec3d sum(0);
+      for (int x = 0; x <= width_; ++x) {
+        const double halfWidth = (LatticeX(x + 1) - LatticeX(x)) / 2;
         for (int i = 0; i < Color::kComponents; ++i) {
           const auto corner = [&](int dx, int dy) { return static_cast<double>(Corner(x + dx, y + dy)[i]); };
-          sum[i] += top * (corner(0, 0) + corner(1, 0)) + bottom * (corner(0, 1) + corner(1, 1));
+          sum[i] +=
+              halfWidth * (integrals.x * (corner(0, 0) + corner(1, 0)) + integrals.y * (corner(0, 1) + corner(1, 1)));
         }
       }
       rowIntegrals[static_cast<size_t>(y)] = sum;
     }
   });
-  table_ = Distribution2D(std::span<const double>(weights), columns, rows);
   Vec3d integral(0);
   for (const Vec3d& row : rowIntegrals) integral += row;
-  integral_ = FiniteColor(integral);
+  return FiniteColor(integral);
 }
 
 Vec2d EnvironmentMap::RowIntegrals(int y) const {
@@ -155,22 +177,22 @@ double EnvironmentMap::CellSolidAngle(const Vec2i& cell) const {
   return 4 * kPiD * width * (haversine_[j + 1] - haversine_[j]);
 }
 
-void EnvironmentMap::Weights(const Vec2i& cell, double (&w)[4]) const {
-  w[0] = Importance(Corner(cell.x, cell.y));
-  w[1] = Importance(Corner(cell.x + 1, cell.y));
-  w[2] = Importance(Corner(cell.x, cell.y + 1));
-  w[3] = Importance(Corner(cell.x + 1, cell.y + 1));
+void EnvironmentMap::Weights(const Vec2i& cell, double threshold, double (&w)[4]) const {
+  const auto at = [&](int dx, int dy) {
+    return std::max(0.0, Importance(Corner(cell.x + dx, cell.y + dy)) - threshold);
+  };
+  w[0] = at(0, 0), w[1] = at(1, 0), w[2] = at(0, 1), w[3] = at(1, 1);
 }
 
 double EnvironmentMap::LatticeX(int i) const { return i == 0 ? 0 : (i > width_ ? 1 : (i - 0.5) / width_); }
 double EnvironmentMap::LatticeY(int j) const { return j == 0 ? 0 : (j > height_ ? 1 : (j - 0.5) / height_); }
 
-EnvironmentMap::Place EnvironmentMap::PlaceOf(const Vec3d& w) const {
+EnvironmentPlace EnvironmentMap::PlaceOf(const Vec3d& w) const {
   const Vec3d unit = Normalize(w);
   const bool isLatLong = mapping_ == EnvironmentMapping::LatLong;
   const Vec2d p = isLatLong ? Vec2d(TurnOf(unit.x, unit.y), std::atan2(std::hypot(unit.x, unit.y), unit.z) / kPiD)
                             : EqualAreaSphereToSquare(unit);
-  Place place;
+  EnvironmentPlace place;
   place.cell = Vec2i(std::clamp(static_cast<int>(p.x * width_ + 0.5), 0, width_),
                      std::clamp(static_cast<int>(p.y * height_ + 0.5), 0, height_));
   const double x0 = LatticeX(place.cell.x), y0 = LatticeY(place.cell.y);
@@ -197,42 +219,65 @@ Vec3d EnvironmentMap::DirectionOf(const Vec2i& cell, const Vec2d& s) const {
 }
 
 Color EnvironmentMap::Radiance(const Vec3d& w) const {
-  const Place place = PlaceOf(w);
+  const EnvironmentPlace place = PlaceOf(w);
   const Vec2i& c = place.cell;
   return Bilinear({Corner(c.x, c.y), Corner(c.x + 1, c.y), Corner(c.x, c.y + 1), Corner(c.x + 1, c.y + 1)}, place.t);
 }
 
 EnvironmentValue EnvironmentMap::Evaluate(const Vec3d& w) const {
-  const Place place = PlaceOf(w);
+  const EnvironmentPlace place = PlaceOf(w);
   const Vec2i& c = place.cell;
   EnvironmentValue value;
   value.L = Bilinear({Corner(c.x, c.y), Corner(c.x + 1, c.y), Corner(c.x, c.y + 1), Corner(c.x + 1, c.y + 1)}, place.t);
-  if (IsBlack()) return value;
-  const double probability = table_.Probability(c);
-  if (probability == 0) return value;
-  double weights[4];
-  Weights(c, weights);
-  value.pdf = probability / CellSolidAngle(c) * BilinearPdf(place.s, weights);
+  value.pdf = DensityAt(base_, place);
   return value;
 }
 
-Vec3d EnvironmentMap::Sample(const Vec2d& u) const {
-  const DiscreteSample2D drawn = table_.SampleDiscrete(u);
-  double weights[4];
-  Weights(drawn.cell, weights);
-  return DirectionOf(drawn.cell, SampleBilinear(drawn.u, weights));
+Vec3d EnvironmentMap::Sample(const Vec2d& u) const { return Sample(base_, u); }
+
+Vec2d EnvironmentMap::Invert(const Vec3d& w) const { return Invert(base_, w); }
+
+Vec3d EnvironmentMap::Sample(const EnvironmentDensity& density, const Vec2d& u) const {
+  const DiscreteSample2D drawn = density.table.SampleDiscrete(u);
+  return DirectionOf(drawn.cell, SampleInCell(drawn.cell, drawn.u, density.threshold));
 }
 
-Vec2d EnvironmentMap::Invert(const Vec3d& w) const {
-  const Place place = PlaceOf(w);
+double EnvironmentMap::Pdf(const EnvironmentDensity& density, const Vec3d& w) const {
+  return DensityAt(density, PlaceOf(w));
+}
+
+double EnvironmentMap::DensityAt(const EnvironmentDensity& density, const EnvironmentPlace& place) const {
+  if (density.table.IsZero()) return 0;
+  const double probability = density.table.Probability(place.cell);
+  return probability == 0 ? 0 : probability * PdfInCell(place.cell, place.s, density.threshold);
+}
+
+Vec2d EnvironmentMap::Invert(const EnvironmentDensity& density, const Vec3d& w) const {
+  const EnvironmentPlace place = PlaceOf(w);
+  if (density.table.Probability(place.cell) == 0) return density.table.InvertDiscrete(place.cell, Vec2d(0));
+  return density.table.InvertDiscrete(place.cell, InvertInCell(place.cell, place.s, density.threshold));
+}
+
+Vec2d EnvironmentMap::SampleInCell(const Vec2i& cell, const Vec2d& u, double threshold) const {
   double weights[4];
-  Weights(place.cell, weights);
-  if (table_.Probability(place.cell) == 0) return table_.InvertDiscrete(place.cell, Vec2d(0));
-  return table_.InvertDiscrete(place.cell, InvertBilinear(place.s, weights));
+  Weights(cell, threshold, weights);
+  return SampleBilinear(u, weights);
+}
+
+double EnvironmentMap::PdfInCell(const Vec2i& cell, const Vec2d& s, double threshold) const {
+  double weights[4];
+  Weights(cell, threshold, weights);
+  return BilinearPdf(s, weights) / CellSolidAngle(cell);
+}
+
+Vec2d EnvironmentMap::InvertInCell(const Vec2i& cell, const Vec2d& s, double threshold) const {
+  double weights[4];
+  Weights(cell, threshold, weights);
+  return InvertBilinear(s, weights);
 }
 
 int64_t EnvironmentMap::MemoryBytes() const {
-  return table_.MemoryBytes() +
+  return base_.table.MemoryBytes() +
          static_cast<int64_t>(lattice_.size() * sizeof(Color) + haversine_.size() * sizeof(double));
 }
 

@@ -6,6 +6,14 @@
 // largest components of the same corners. The density is thus positive exactly where the radiance is, and close to it
 // in shape: for an equal-area gray map in proportion to it; for LatLong the radiance is linear in theta within a cell
 // and the density in cos theta, which differ noticeably in the cells at the poles only.
+//
+// Why so. With a bilinear lookup and a density constant over texels, the density is zero next to a bright texel among
+// black ones, where the lookup is not: light is lost. A table of the texels' filtered means mends that, but its density
+// differs from the radiance by up to the contrast of neighbours. Radiance constant over texels, looked up at the
+// nearest one, would fit its table exactly, and show its squares in every mirror and as steps in every shadow. The
+// exact sampler of the bilinear function costs one quadratic equation more for each of both coordinates.
+//
+// Other densities over the same cells (next-event strategies) are made from the functions of the second half.
 #pragma once
 
 #include <vector>
@@ -30,6 +38,20 @@ struct EnvironmentValue {
   double pdf = 0;  ///< per solid angle
 };
 
+/// A density of directions over the cells of a map, bilinear in each: as importance at the corners of the cells, less
+/// `threshold`, and 0 where that is negative.
+struct EnvironmentDensity {
+  Distribution2D table;
+  double threshold = 0;
+};
+
+/// A direction as a cell of the map and a place in it: `t` within the cell for the lookup, `s` for densities. For
+/// LatLong s.y is linear in cos theta, so that a density per solid angle has no 1 / sin theta in it.
+struct EnvironmentPlace {
+  Vec2i cell;
+  Vec2d t, s;
+};
+
 class EnvironmentMap {
  public:
   /// `image` has at least one pixel, its colours are finite and not negative (see `Repair`); square for EqualArea.
@@ -41,7 +63,7 @@ class EnvironmentMap {
   static Image Repair(const Image& image, int64_t* repairedPixels);
 
   /// No radiance anywhere: nothing can be drawn.
-  bool IsBlack() const { return table_.IsZero(); }
+  bool IsBlack() const { return base_.table.IsZero(); }
   /// `w` of any length but zero.
   Color Radiance(const Vec3d& w) const;
   /// Radiance and density in one lookup.
@@ -55,24 +77,44 @@ class EnvironmentMap {
   /// Of the tables; the image is not kept.
   int64_t MemoryBytes() const;
 
- private:
-  /// A direction as a cell and a place in it: `t` within the cell for the lookup, `s` for the density. For LatLong s.y
-  /// is linear in cos theta, so that the density per solid angle has no 1 / sin theta in it.
-  struct Place {
-    Vec2i cell;
-    Vec2d t, s;
-  };
-
-  Place PlaceOf(const Vec3d& w) const;
+  /// Columns and rows of cells.
+  Vec2i Cells() const { return {width_ + 1, height_ + 1}; }
+  EnvironmentMapping Mapping() const { return mapping_; }
+  /// `w` of any length but zero.
+  EnvironmentPlace PlaceOf(const Vec3d& w) const;
+  /// The unit direction of the place `s` in [0, 1]^2 of a cell.
   Vec3d DirectionOf(const Vec2i& cell, const Vec2d& s) const;
+  double CellSolidAngle(const Vec2i& cell) const;
+  /// Integrals over the cells (solid angle) of the importance less `threshold`, 0 where negative; row by row.
+  std::vector<double> CellWeights(double threshold) const;
+  /// The largest component of the radiance integrated over all directions, and divided by 4 pi.
+  double MeanImportance() const;
+
+  /// The map's own, of threshold 0: `Evaluate`'s.
+  const EnvironmentDensity& Density() const { return base_; }
+  /// Of a table that is zero nothing can be drawn.
+  EnvironmentDensity MakeDensity(double threshold) const;
+  /// A unit direction; its density per solid angle is `Pdf`'s.
+  Vec3d Sample(const EnvironmentDensity& density, const Vec2d& u) const;
+  double Pdf(const EnvironmentDensity& density, const Vec3d& w) const;
+  Vec2d Invert(const EnvironmentDensity& density, const Vec3d& w) const;
+
+  // Within a cell: bilinear between the importance at its corners less a threshold.
+  Vec2d SampleInCell(const Vec2i& cell, const Vec2d& u, double threshold = 0) const;
+  /// The density of the place `s` of a cell, per solid angle of that cell.
+  double PdfInCell(const Vec2i& cell, const Vec2d& s, double threshold = 0) const;
+  Vec2d InvertInCell(const Vec2i& cell, const Vec2d& s, double threshold = 0) const;
+
+ private:
   void FillLattice(const Image& image, const Color& scale);
-  void BuildTable();
+  void FillHaversines();
+  Color IntegrateRadiance() const;
+  double DensityAt(const EnvironmentDensity& density, const EnvironmentPlace& place) const;
   /// The integrals over the cells of row y of the two functions that are linear in v, 1 at one border and 0 at the
   /// other.
   Vec2d RowIntegrals(int y) const;
-  double CellSolidAngle(const Vec2i& cell) const;
-  /// Importance at the four corners of a cell: (0,0), (1,0), (0,1), (1,1).
-  void Weights(const Vec2i& cell, double (&w)[4]) const;
+  /// Importance, less `threshold`, at the four corners of a cell: (0,0), (1,0), (0,1), (1,1).
+  void Weights(const Vec2i& cell, double threshold, double (&w)[4]) const;
   const Color& Corner(int x, int y) const {
     return lattice_[static_cast<size_t>(y) * static_cast<size_t>(width_ + 2) + static_cast<size_t>(x)];
   }
@@ -83,7 +125,7 @@ class EnvironmentMap {
   int width_, height_;             // of the image
   std::vector<Color> lattice_;     // the lookup at the corners of the cells, (width + 2) x (height + 2)
   std::vector<double> haversine_;  // LatLong: (1 - cos theta) / 2 at the borders of the rows of cells
-  Distribution2D table_;
+  EnvironmentDensity base_;
   Color integral_;
 };
 

@@ -122,8 +122,23 @@ EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
     FailUnknownName(light.params.LocationOf("emission", light.location), "emission", emission,
                     {"importance", "uniform"});
   }
+  const std::string sampling = light.params.GetString("sampling", "importance");
+  static const std::pair<const char*, EnvironmentSampling> kSamplings[] = {
+      {"uniform", EnvironmentSampling::Uniform},       {"cosine", EnvironmentSampling::Cosine},
+      {"importance", EnvironmentSampling::Importance}, {"compensated", EnvironmentSampling::Compensated},
+      {"structured", EnvironmentSampling::Structured}, {"product", EnvironmentSampling::Product}};
+  std::vector<std::string> names;
+  for (const auto& [name, value] : kSamplings) {
+    names.emplace_back(name);
+    if (sampling == name) options.sampling = value;
+  }
+  if (std::find(names.begin(), names.end(), sampling) == names.end())
+    FailUnknownName(light.params.LocationOf("sampling", light.location), "sampling", sampling, names);
   return options;
 }
+
+/// One white pixel where the light has no image.
+Image WhitePixel() { return {1, 1, {"Y"}, {1.f}}; }
 
 std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescription& light, const Parameter& fileName,
                                            const EnvironmentOptions& options) {
@@ -160,7 +175,8 @@ std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& lig
   }
   const Color L = GetEmission(values, light, "L") * TargetFactor(context, light, "illuminance", kPiD);
   // The same from everywhere: both ways to emit are one.
-  return std::make_unique<UniformEnvironmentLight>(L);
+  if (!light.params.Has("sampling")) return std::make_unique<UniformEnvironmentLight>(L);
+  return std::make_unique<EnvironmentLight>(WhitePixel(), Transform(), L, MappingOf(context), options);
 }
 
 /// `make(factor)` builds a light by an image; the factor is such that pbrt-v4's "power" is reached.
@@ -171,9 +187,6 @@ std::unique_ptr<Light> BuildToPower(const BuildContext& context, const LightDesc
   if (!context.IsV3() && light.params.Has("power")) reached = static_cast<double>(make(Color(1))->Power().Luminance());
   return make(factor * TargetFactor(context, light, "power", reached));
 }
-
-/// One white pixel where the light has no image.
-Image WhitePixel() { return {1, 1, {"Y"}, {1.f}}; }
 
 /// In pbrt-v4 the image of a goniometric light has no colours.
 Image AverageOfColors(const Image& image) {

@@ -197,6 +197,21 @@ TEST(BuildLights, UniformEnvironments) {
   ExpectColor(Irradiance(v4), Color(7), 0.01);
 }
 
+TEST(BuildLights, SamplingOfInfiniteLights) {
+  for (const std::string sampling : {"uniform", "cosine", "importance", "compensated", "structured", "product"}) {
+    const Built built = Lit("LightSource \"infinite\" \"rgb L\" [1 2 3] \"string sampling\" \"" + sampling + "\"", 3);
+    ExpectColor(Irradiance(built), Color(1, 2, 3) * kPi, 0.01);
+  }
+  EXPECT_THROW(Lit(R"(LightSource "infinite" "string sampling" "importanze")", 3), Error);
+  // Which density `Sample_Li` has: by the cosine above, by radiance (here even over the sphere) elsewhere.
+  const auto pdfStraightUp = [](const std::string& sampling) {
+    const Built built = Lit("LightSource \"infinite\" \"string sampling\" \"" + sampling + "\"", 4);
+    return built->Lights()[0]->Pdf_Li(LightContext(Vec3(0), Vec3(0, 0, 1), false), Vec3(0, 0, 1), nullptr);
+  };
+  EXPECT_NEAR(pdfStraightUp("cosine"), 1 / kPiD, 1e-6);
+  EXPECT_NEAR(pdfStraightUp("structured"), 1 / (4 * kPiD), 1e-6);
+}
+
 TEST(BuildLights, SamplesOfInfiniteLights) {
   EXPECT_EQ(Lit(R"(LightSource "infinite" "integer samples" 16)", 3)->Lights()[0]->SampleCount(), 16);
   EXPECT_EQ(Lit(R"(LightSource "infinite" "integer nsamples" 4)", 3)->Lights()[0]->SampleCount(), 4);
