@@ -43,10 +43,8 @@ struct Case {
   int blockSize = 32;
   double tolerance = 0.02;
   double floor = 0;          // absolute error of the reference itself
-  int referenceSamples = 0;  // of a path-traced reference whose noise is not negligible
-  double maxFailedShare = 0;
-  int groups = 8;
-  int photons = 0;  // light paths a pass; 0: as the scene says
+  int referenceSamples = 0;  // random ones a pixel, of a path-traced reference whose noise is not negligible
+  int photons = 0;           // light paths a pass; 0: as the scene says
 };
 
 // At the foot of the ring the reference (another renderer's photon map) has light that leaked under the wall: its
@@ -79,13 +77,16 @@ class BlockMeansAgree : public Reference {};
 TEST_P(BlockMeansAgree, WithinTwoPercentAndThreeSigma) {
   const Case& c = GetParam();
   const auto scene = Load(c.scene + ".pbrt");
-  const GroupedImages images = RenderGroups(*scene, c.integrator, OptionsOf(*scene), c.passes, c.groups);
-  const GroupedImages reference = Exact(ReadImage(ReferenceFolder() + "/" + c.reference + ".exr"));
-  const BlockReport report = CompareBlocks(images, reference, c.blockSize, c.tolerance, {}, c.floor,
-                                           c.referenceSamples > 0 ? double(c.passes) / c.referenceSamples : 0);
+  // The two passes of a group are independent, so many groups of one pair show the noise of random samples.
+  const bool isNoisy = c.referenceSamples > 0;
+  const int groups = isNoisy ? c.passes / 2 : kGroups, kept = isNoisy ? c.blockSize : 1;
+  const GroupedImages images = RenderGroups(*scene, c.integrator, OptionsOf(*scene), c.passes, groups, 1, kept);
+  const GroupedImages reference = Exact(BlockMeans(ReadImage(ReferenceFolder() + "/" + c.reference + ".exr"), kept));
+  const BlockReport report = CompareBlocks(images, reference, c.blockSize / kept, c.tolerance, {}, c.floor,
+                                           isNoisy ? double(c.passes) / c.referenceSamples : 0);
   std::cout << report.text << "\n";
   EXPECT_NEAR(report.meanRatio, 1, kMeanTolerance);
-  EXPECT_LE(report.failed, c.maxFailedShare * report.blocks) << report.text;
+  EXPECT_EQ(report.failed, 0) << report.text;
   EXPECT_LT(report.medianSigma, kMaxMedianSigma) << "too noisy to say anything";
 }
 
@@ -105,15 +106,16 @@ INSTANTIATE_TEST_SUITE_P(V4, BlockMeansAgree,
                                            Case{"envglass-v4", "envglass", "path", 128, 32, 0.03, kResampledSky},
                                            Case{"envglass-v4", "envglass", "sppm", 128, 32, 0.03, kResampledSky}),
                          NameOf);
-// References with random samples, 256 and 512 a pixel: their noise counts as that of as many paths of ours.
-// With 1,936 and 625 blocks of three channels, three sigma of an estimated sigma (16 groups) are exceeded by chance in
-// one of a hundred that lie near the tolerance: 0.2 % of the blocks may fail.
-INSTANTIATE_TEST_SUITE_P(OthersScenes, BlockMeansAgree,
-                         ::testing::Values(Case{"../data/killeroo-simple", "../data/killeroo-simple", "path", 256, 16,
-                                                0.02, 0, 256, 0.002, 16},
-                                           Case{"../data/gold-teapot", "../data/gold-teapot", "path", 256, 16, 0.02, 0,
-                                                512, 0.002, 16}),
-                         NameOf);
+// References with random samples, 256 and 512 a pixel: their noise counts as that of as many random paths of ours.
+// A known difference lies within these bounds: where shading and geometric normals disagree pbrt-v3 counts light from
+// between their hemispheres when it samples a light, but never draws such a direction from a BSDF, and so loses
+// indirect light. At a foot in the killeroo's shadow (block 33, 35) a path tracer with that rule finds 0.00865 +-
+// 0.00003 (red), Dapple's 0.00890, the reference 0.00854 +- 0.0001.
+INSTANTIATE_TEST_SUITE_P(
+    OthersScenes, BlockMeansAgree,
+    ::testing::Values(Case{"../data/killeroo-simple", "../data/killeroo-simple", "path", 256, 16, 0.02, 0, 256},
+                      Case{"../data/gold-teapot", "../data/gold-teapot", "path", 256, 16, 0.02, 0, 512}),
+    NameOf);
 
 // The check above must be able to fail: it rejects a picture without its caustic, and one with the caustic elsewhere.
 TEST_F(Reference, MissingCausticIsRejected) {

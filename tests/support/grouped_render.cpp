@@ -20,7 +20,7 @@ Image GroupedImages::Mean() const {
 }
 
 GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
-                           int passes, int groups, uint64_t seed) {
+                           int passes, int groups, uint64_t seed, int blockSize) {
   const RenderSettings& settings = scene.Settings();
   GroupedImages result;
   for (int group = 0; group < groups; ++group) {
@@ -29,7 +29,7 @@ GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, co
     Film film(settings.resolution, settings.crop, settings.filter);
     for (int pair = group; 2 * pair < passes; pair += groups)
       for (int pass : {2 * pair, 2 * pair + 1}) algorithm->RenderPass(pass, film);
-    result.groups.push_back(film.ToImage());
+    result.groups.push_back(BlockMeans(film.ToImage(), blockSize));
   }
   return result;
 }

@@ -21,9 +21,10 @@ struct GroupedImages {
 };
 
 /// Renders passes 0 to `passes` - 1, pair by pair in turn into `groups` films of seeds of their own. The radius
-/// schedule of progressive algorithms runs on over all groups, so each sees the same bias.
+/// schedule of progressive algorithms runs on over all groups, so each sees the same bias. Keeps the means of blocks of
+/// blockSize^2 pixels.
 GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
-                           int passes, int groups, uint64_t seed = 1);
+                           int passes, int groups, uint64_t seed = 1, int blockSize = 1);
 
 /// c0 a + c1 b, group by group.
 GroupedImages Combine(const GroupedImages& a, double c0, const GroupedImages& b, double c1);
