@@ -8,10 +8,6 @@ namespace dapple {
 
 namespace {
 
-// Buckets small enough to share the building of a pass's photons among threads, and to be found in the cache by the
-// gathers of a tile; bench/photon_map_bench compares the whole with one tree.
-constexpr size_t kBucketSize = 8192;
-constexpr size_t kLeafSize = 12;
 constexpr int64_t kChunk = 1 << 15;
 
 Bounds3 BoundsOf(std::span<const Vec3> points) {
@@ -22,16 +18,17 @@ Bounds3 BoundsOf(std::span<const Vec3> points) {
 
 }  // namespace
 
-PhotonForest::PhotonForest(std::vector<Vec3> positions) : positions_(std::move(positions)) {
+PhotonForest::PhotonForest(std::vector<Vec3> positions, const Follower& follow, const ForestShape& shape)
+    : positions_(std::move(positions)) {
   if (positions_.empty()) return;
   assert(positions_.size() < UINT32_MAX);
   int levels = 0;
-  while ((positions_.size() >> levels) > kBucketSize) ++levels;
-  SplitIntoBuckets(levels);
-  BuildTrees();
+  while ((positions_.size() >> levels) > shape.bucketSize) ++levels;
+  SplitIntoBuckets(levels, follow);
+  BuildTrees(shape.leafSize, follow);
 }
 
-void PhotonForest::SplitIntoBuckets(int levels) {
+void PhotonForest::SplitIntoBuckets(int levels, const Follower& follow) {
   struct Point {
     Vec3 p;
     uint32_t index;
@@ -42,6 +39,7 @@ void PhotonForest::SplitIntoBuckets(int levels) {
     for (int64_t i = begin; i < end; ++i)
       points[static_cast<size_t>(i)] = {positions_[static_cast<size_t>(i)], static_cast<uint32_t>(i)};
   });
+  positions_ = std::vector<Vec3>();  // `= {}` would keep the memory
 
   // Range k of 2^level ends where the next begins; medians make all of them as long, to within one.
   const auto start = [&](size_t k, int level) { return (points.size() * k) >> level; };
@@ -58,12 +56,16 @@ void PhotonForest::SplitIntoBuckets(int levels) {
     });
   }
 
-  order_.resize(points.size());
+  if (follow) {
+    std::vector<uint32_t> order(points.size());
+    ParallelForChunks(count, kChunk, [&](int64_t begin, int64_t end) {
+      for (int64_t i = begin; i < end; ++i) order[static_cast<size_t>(i)] = points[static_cast<size_t>(i)].index;
+    });
+    follow(0, order);
+  }
+  positions_.resize(points.size());
   ParallelForChunks(count, kChunk, [&](int64_t begin, int64_t end) {
-    for (int64_t i = begin; i < end; ++i) {
-      positions_[static_cast<size_t>(i)] = points[static_cast<size_t>(i)].p;
-      order_[static_cast<size_t>(i)] = points[static_cast<size_t>(i)].index;
-    }
+    for (int64_t i = begin; i < end; ++i) positions_[static_cast<size_t>(i)] = points[static_cast<size_t>(i)].p;
   });
   buckets_.resize(size_t{1} << levels);
   for (size_t k = 0; k < buckets_.size(); ++k) {
@@ -72,24 +74,20 @@ void PhotonForest::SplitIntoBuckets(int levels) {
   }
 }
 
-void PhotonForest::BuildTrees() {
+void PhotonForest::BuildTrees(size_t leafSize, const Follower& follow) {
   boxes_.resize(2 * buckets_.size());
   ParallelFor(static_cast<int64_t>(buckets_.size()), [&](int64_t k) {
     Bucket& bucket = buckets_[static_cast<size_t>(k)];
     const size_t first = bucket.first, count = bucket.points.count;
     bucket.points.points = positions_.data() + first;
-    bucket.tree = std::make_unique<Tree>(3, bucket.points, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+    bucket.tree = std::make_unique<Tree>(3, bucket.points, nanoflann::KDTreeSingleIndexAdaptorParams(leafSize));
 
     // Points move to the order of the tree's leaves, so that a leaf is one stretch of memory.
     std::vector<uint32_t>& leafOrder = bucket.tree->vAcc;
     std::vector<Vec3> positions(count);
-    std::vector<uint32_t> order(count);
-    for (size_t i = 0; i < count; ++i) {
-      positions[i] = positions_[first + leafOrder[i]];
-      order[i] = order_[first + leafOrder[i]];
-    }
+    for (size_t i = 0; i < count; ++i) positions[i] = positions_[first + leafOrder[i]];
     std::copy(positions.begin(), positions.end(), positions_.begin() + static_cast<int64_t>(first));
-    std::copy(order.begin(), order.end(), order_.begin() + static_cast<int64_t>(first));
+    if (follow) follow(first, leafOrder);
     std::iota(leafOrder.begin(), leafOrder.end(), 0u);
     boxes_[buckets_.size() + static_cast<size_t>(k)] = BoundsOf({positions_.data() + first, count});
   });
@@ -100,8 +98,7 @@ void PhotonForest::BuildTrees() {
 }
 
 int64_t PhotonForest::MemoryBytes() const {
-  int64_t bytes = static_cast<int64_t>(positions_.capacity() * sizeof(Vec3) + order_.capacity() * sizeof(uint32_t) +
-                                       boxes_.capacity() * sizeof(Bounds3));
+  int64_t bytes = static_cast<int64_t>(positions_.capacity() * sizeof(Vec3) + boxes_.capacity() * sizeof(Bounds3));
   for (const Bucket& bucket : buckets_)
     bytes += static_cast<int64_t>(sizeof(Bucket) + sizeof(Tree) + bucket.tree->usedMemory(*bucket.tree));
   return bytes;

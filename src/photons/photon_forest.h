@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,15 +14,22 @@
 
 namespace dapple {
 
+/// How points are cut: into buckets and, within a bucket, into leaves of its kd-tree, of at most so many points. These
+/// sizes gather fastest of those that bench/photon_map_bench tries, and take least memory.
+struct ForestShape {
+  size_t bucketSize = 2048;
+  size_t leafSize = 24;
+};
+
 class PhotonForest {
  public:
-  PhotonForest() = default;
-  explicit PhotonForest(std::vector<Vec3> positions);
+  /// What moves along with the points while they are put in order: the place `first` + i receives what stood at the
+  /// place `first` + order[i]. Called for all places at once and then, in parallel, for stretches of them.
+  using Follower = std::function<void(size_t first, std::span<const uint32_t> order)>;
 
-  /// Entry i: which of the points given to the constructor now stands at place i.
-  const std::vector<uint32_t>& Order() const { return order_; }
-  /// Frees `Order` once the payloads follow it.
-  void ForgetOrder() { order_ = {}; }
+  PhotonForest() = default;
+  explicit PhotonForest(std::vector<Vec3> positions, const Follower& follow = {}, const ForestShape& shape = {});
+
   const Vec3& Position(uint32_t i) const { return positions_[i]; }
 
   /// Calls `visit(uint32_t i, float distanceSquared)` for each point nearer to `p` than `radius`.
@@ -67,11 +75,10 @@ class PhotonForest {
   };
 
   size_t BucketCount() const { return buckets_.size(); }
-  void SplitIntoBuckets(int levels);
-  void BuildTrees();
+  void SplitIntoBuckets(int levels, const Follower& follow);
+  void BuildTrees(size_t leafSize, const Follower& follow);
 
   std::vector<Vec3> positions_;
-  std::vector<uint32_t> order_;
   std::vector<Bucket> buckets_;  // a power of two of them, in the order of the splits
   std::vector<Bounds3>
       boxes_;  // implicit binary tree over the buckets: node i has children 2i and 2i + 1, the root is 1

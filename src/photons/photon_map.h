@@ -1,17 +1,17 @@
 // The photon map: photons on surfaces, found by place.
 //
 // Positions lie apart from what the photons carry, both in the order of a forest of nanoflann kd-trees: space is halved
-// into buckets of a few thousand photons, each with a tree of its own, so that building is parallel and neighbours in
-// space are neighbours in memory. The order depends on the photons alone, never on the number of threads.
+// into buckets of one or two thousand photons, each with a tree of its own, so that building is parallel and neighbours
+// in space are neighbours in memory. The order depends on the photons alone, never on the number of threads.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "src/base/vec.h"
+#include "src/photons/permute.h"
 #include "src/photons/photon_forest.h"
 
 namespace dapple {
@@ -21,15 +21,13 @@ template <typename Payload>
 class PhotonMap {
  public:
   PhotonMap() = default;
-  /// `positions[i]` belongs to `payloads[i]`; positions are finite. At most 2^32 - 1 photons.
-  PhotonMap(std::vector<Vec3> positions, const std::vector<Payload>& payloads) : forest_(std::move(positions)) {
-    payloads_.resize(payloads.size());
-    ParallelForChunks(static_cast<int64_t>(payloads.size()), 1 << 15, [&](int64_t begin, int64_t end) {
-      for (int64_t i = begin; i < end; ++i)
-        payloads_[static_cast<size_t>(i)] = payloads[forest_.Order()[static_cast<size_t>(i)]];
-    });
-    forest_.ForgetOrder();
-  }
+  /// `positions[i]` belongs to `payloads[i]`; positions are finite. At most 2^32 - 1 photons. Give both away with
+  /// std::move: they are put in order in place.
+  PhotonMap(std::vector<Vec3> positions, std::vector<Payload> payloads)
+      : payloads_(std::move(payloads)),
+        forest_(std::move(positions), [this](size_t first, std::span<const uint32_t> order) {
+          PermuteInPlace(std::span(payloads_).subspan(first, order.size()), order);
+        }) {}
 
   size_t Size() const { return payloads_.size(); }
 
@@ -47,8 +45,8 @@ class PhotonMap {
   }
 
  private:
-  PhotonForest forest_;
   std::vector<Payload> payloads_;
+  PhotonForest forest_;  // puts the payloads in order while it is built
 };
 
 }  // namespace dapple

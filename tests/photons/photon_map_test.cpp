@@ -88,12 +88,6 @@ TEST(PhotonMap, OrderDoesNotDependOnThreads) {
   EXPECT_EQ(order[0], order[1]);
 }
 
-TEST(PhotonMap, StaysWithinItsBytesPerPhoton) {
-  constexpr size_t kCount = 1000000;
-  const PhotonMap<int> map(UniformCloud(kCount, 5), Numbers(kCount));
-  EXPECT_LT(map.MemoryBytes(), static_cast<int64_t>(kCount) * 40);
-}
-
 TEST(EpanechnikovKernel, IntegratesToOneOverItsDisk) {
   constexpr float kRadius = 0.37f;
   const EpanechnikovKernel kernel(kRadius);
