@@ -30,6 +30,9 @@ SurfaceDetailPtr BuildDetail(const MaterialInput& in);
 /// "uroughness" and "vroughness", each else "roughness", else the fallback; names begin with `prefix`.
 Roughness BuildRoughness(const MaterialInput& in, double fallback, RoughnessRemap remap,
                          const std::string& prefix = "");
+/// `roughness` with the microfacet distribution that "distribution" names: "ggx" (where it is not given), "beckmann",
+/// "blinn" or "ashikhminshirley". Throws `Error` at the place of any other name.
+Roughness WithDistribution(const MaterialInput& in, Roughness roughness);
 /// An index of refraction that no texture may vary: where one does, a warning, and the fallback.
 float GetUniformEta(const MaterialInput& in, std::string_view name, double fallback);
 

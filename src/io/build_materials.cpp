@@ -115,6 +115,23 @@ Roughness BuildRoughness(const MaterialInput& in, double fallback, RoughnessRema
   return {u ? u : both, v ? v : both, remap};
 }
 
+Roughness WithDistribution(const MaterialInput& in, Roughness roughness) {
+  static const std::vector<std::pair<std::string, MicrofacetKind>> kKinds = {
+      {"ggx", MicrofacetKind::Ggx},
+      {"beckmann", MicrofacetKind::Beckmann},
+      {"blinn", MicrofacetKind::Blinn},
+      {"ashikhminshirley", MicrofacetKind::AshikhminShirley}};
+  const std::string name = in.Params().GetString("distribution", "ggx");
+  std::vector<std::string> names;
+  for (const auto& [known, kind] : kKinds) {
+    names.push_back(known);
+    if (known != name) continue;
+    roughness.SetKind(kind);
+    return roughness;
+  }
+  FailUnknownName(in.Params().LocationOf("distribution", in.material.location), "microfacet distribution", name, names);
+}
+
 float GetUniformEta(const MaterialInput& in, std::string_view name, double fallback) {
   const FloatTexturePtr eta = in.values.FindIndexOfRefraction(in.Params(), name);
   if (!eta) return static_cast<float>(fallback);

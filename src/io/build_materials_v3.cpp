@@ -23,7 +23,12 @@ FloatTexturePtr EtaOrIndex(const MaterialInput& in) {
 
 /// As pbrt-v3: of glass and substrate, "roughness" alone says nothing.
 Roughness TwoRoughnesses(const MaterialInput& in, double fallback) {
-  return {in.FloatOf("uroughness", fallback), in.FloatOf("vroughness", fallback), Remap(in)};
+  return WithDistribution(in, {in.FloatOf("uroughness", fallback), in.FloatOf("vroughness", fallback), Remap(in)});
+}
+
+/// As pbrt-v3: of plastic and translucent, the gloss is isotropic.
+Roughness OneRoughness(const MaterialInput& in) {
+  return WithDistribution(in, {in.FloatOf("roughness", 0.1), Remap(in)});
 }
 
 std::unique_ptr<Material> BuildMatte(const MaterialInput& in) {
@@ -31,13 +36,12 @@ std::unique_ptr<Material> BuildMatte(const MaterialInput& in) {
 }
 
 std::unique_ptr<Material> BuildPlastic(const MaterialInput& in) {
-  const Roughness roughness(in.FloatOf("roughness", 0.1), Remap(in));
-  return std::make_unique<PlasticMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), roughness, BuildDetail(in));
+  return std::make_unique<PlasticMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), OneRoughness(in),
+                                           BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildTranslucent(const MaterialInput& in) {
-  const Roughness roughness(in.FloatOf("roughness", 0.1), Remap(in));
-  return std::make_unique<TranslucentMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), roughness,
+  return std::make_unique<TranslucentMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), OneRoughness(in),
                                                in.ColorOf("reflect", 0.5), in.ColorOf("transmit", 0.5),
                                                BuildDetail(in));
 }
@@ -66,7 +70,8 @@ std::unique_ptr<Material> BuildMetal(const MaterialInput& in) {
   const auto copper = [](const char* name) { return SpectrumToColorV3(NamedSpectrum(name)); };
   ColorTexturePtr eta = in.values.GetColor(in.Params(), "eta", copper("metal-Cu-eta"));
   ColorTexturePtr k = in.values.GetColor(in.Params(), "k", copper("metal-Cu-k"));
-  return std::make_unique<ConductorMaterial>(eta, k, BuildRoughness(in, 0.01, Remap(in)), BuildDetail(in));
+  const Roughness roughness = WithDistribution(in, BuildRoughness(in, 0.01, Remap(in)));
+  return std::make_unique<ConductorMaterial>(eta, k, roughness, BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildSubstrate(const MaterialInput& in) {
@@ -82,7 +87,7 @@ std::unique_ptr<Material> BuildUber(const MaterialInput& in) {
   parameters.kt = in.ColorOf("Kt", 0);
   parameters.opacity = in.ColorOf("opacity", 1);
   parameters.eta = EtaOrIndex(in);
-  parameters.roughness = BuildRoughness(in, 0.1, Remap(in));
+  parameters.roughness = WithDistribution(in, BuildRoughness(in, 0.1, Remap(in)));
   return std::make_unique<UberMaterial>(parameters, BuildDetail(in));
 }
 

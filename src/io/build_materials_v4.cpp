@@ -58,14 +58,14 @@ std::unique_ptr<Material> BuildDiffuse(const MaterialInput& in) {
 
 std::unique_ptr<Material> BuildConductor(const MaterialInput& in) {
   const Metal metal = BuildMetal(in, "", "reflectance");
-  const Roughness roughness = BuildRoughness(in, 0, Remap(in));
+  const Roughness roughness = WithDistribution(in, BuildRoughness(in, 0, Remap(in)));
   if (metal.reflectance) return std::make_unique<ConductorMaterial>(metal.reflectance, roughness, BuildDetail(in));
   return std::make_unique<ConductorMaterial>(metal.eta, metal.k, roughness, BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildDielectric(const MaterialInput& in) {
-  return std::make_unique<DielectricMaterial>(Eta(in), BuildRoughness(in, 0, Remap(in)), nullptr, nullptr,
-                                              BuildDetail(in));
+  const Roughness roughness = WithDistribution(in, BuildRoughness(in, 0, Remap(in)));
+  return std::make_unique<DielectricMaterial>(Eta(in), roughness, nullptr, nullptr, BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildThinDielectric(const MaterialInput& in) {

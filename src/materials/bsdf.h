@@ -38,6 +38,24 @@ struct BsdfSample {
   bool IsSpecular() const { return flags.IsSpecular(); }
 };
 
+/// The shares of arriving flux that leave on the side where it came from, and on the other.
+struct ScatteredShares {
+  Color reflected, transmitted;
+
+  Color Sum() const { return reflected + transmitted; }
+  ScatteredShares& operator+=(const ScatteredShares& other) {
+    reflected += other.reflected;
+    transmitted += other.transmitted;
+    return *this;
+  }
+  friend ScatteredShares operator*(const ScatteredShares& a, const Color& scale) {
+    return {a.reflected * scale, a.transmitted * scale};
+  }
+};
+
+/// Of a surface; its normal points outside.
+enum class SurfaceSide { Outside, Inside };
+
 class Bsdf {
  public:
   /// Two materials of five lobes (v3's "uber") may be mixed.
@@ -74,6 +92,16 @@ class Bsdf {
 
   /// An estimate of the hemispherical-directional reflectance and transmittance for `wo`, for demodulation and guides.
   Color Albedo(const Vec3& wo) const;
+
+  /// Hemispherical-directional reflectance and transmittance: of the flux that arrives along `wo`, the shares that all
+  /// lobes, specular ones too, scatter to either side. In the shading frame, as if ng were ns: the integral of `Eval`
+  /// in importance mode, and what is specular; by reciprocity `reflected` is also the radiance toward `wo` under
+  /// radiance 1 from all of its side. Exact for specular, Lambertian and Oren-Nayar lobes; any other by `samples` > 0
+  /// stratified samples, the same in every call, a power of two best.
+  ScatteredShares Rho(const Vec3& wo, int samples = 1024) const;
+  /// Hemispherical-hemispherical ones: of diffuse light that arrives on one side, the mean of `Rho(wo)` by the cosine
+  /// of wo, from `samples` stratified directions.
+  ScatteredShares Rho(SurfaceSide from = SurfaceSide::Outside, int samples = 4096) const;
 
   const Frame& ShadingFrame() const { return shading_; }
   const Vec3& GeometricNormal() const { return ng_; }

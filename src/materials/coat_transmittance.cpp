@@ -1,7 +1,7 @@
 #include "src/materials/coat_transmittance.h"
 
 #include "src/materials/fresnel.h"
-#include "src/materials/microfacet.h"
+#include "src/materials/ggx.h"
 
 namespace dapple {
 

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "src/materials/coat_transmittance.h"
+#include "src/materials/ggx.h"
 #include "src/materials/lobe_flags.h"
-#include "src/materials/microfacet.h"
 #include "src/materials/specular_lobes.h"
 
 namespace dapple {

@@ -25,7 +25,7 @@ CoatedDiffuseMaterial::CoatedDiffuseMaterial(ColorTexturePtr reflectance, Roughn
       eta_(eta),
       diffuseReflectance_(FresnelDiffuseReflectance(eta)),
       detail_(std::move(detail)) {
-  if (roughness_.IsAlwaysSmooth() || RoughDielectric::NearIndexMatch(eta)) return;
+  if (roughness_.IsAlwaysSmooth() || NearIndexMatch(eta)) return;
   if (const std::optional<Ggx> ggx = roughness_.Constant()) {
     const float alpha = std::sqrt(ggx->AlphaX() * ggx->AlphaY());
     roughCoat_.emplace(eta, alpha, alpha);

@@ -33,7 +33,9 @@ Bsdf ConductorMaterial::GetBsdf(const SurfaceInteraction& hit) const {
   const Color eta = eta_ ? eta_->Evaluate(at) : Color(1);
   const Color k = k_ ? k_->Evaluate(at) : ConductorKFromReflectance(EvaluateShare(reflectance_, at, Color()));
   if (const std::optional<Ggx> ggx = roughness_.Evaluate(at)) {
-    bsdf.Add(RoughConductor{*ggx, eta, k});
+    WithMicrofacets(roughness_.Kind(), *ggx, [&](const auto& microfacets) {
+      bsdf.Add(RoughConductor{microfacets, eta, k});
+    });
   } else {
     bsdf.Add(ConductorReflection(eta, k));
   }

@@ -19,7 +19,7 @@ class MirrorMaterial final : public Material {
   SurfaceDetailPtr detail_;
 };
 
-/// pbrt-v3 "metal" and pbrt-v4 "conductor": Fresnel's reflection, smooth or GGX.
+/// pbrt-v3 "metal" and pbrt-v4 "conductor": Fresnel's reflection, smooth or rough.
 class ConductorMaterial final : public Material {
  public:
   /// Of index `eta` + i `k`.

@@ -18,8 +18,10 @@ Bsdf DielectricMaterial::GetBsdf(const SurfaceInteraction& hit) const {
   const float eta = EvaluateEta(eta_, at);
   const Color kr = EvaluateShare(kr_, at, Color(1)), kt = EvaluateShare(kt_, at, Color(1));
   const std::optional<Ggx> ggx = roughness_.Evaluate(at);
-  if (ggx && !RoughDielectric::NearIndexMatch(eta)) {
-    bsdf.Add(RoughDielectric{*ggx, eta, kr, kt});
+  if (ggx && !NearIndexMatch(eta)) {
+    WithMicrofacets(roughness_.Kind(), *ggx, [&](const auto& microfacets) {
+      bsdf.Add(RoughDielectric{microfacets, eta, kr, kt});
+    });
   } else {
     bsdf.Add(SmoothDielectric(eta, kr, kt));
   }
@@ -33,7 +35,7 @@ MaterialFacts DielectricMaterial::Facts() const {
   if (!IsAlwaysBlack(kt_)) glossy |= LobeFlags::kGlossyTransmission, smooth |= LobeFlags::kSpecularTransmission;
   if (smooth.IsEmpty()) return facts;
   const bool constantEta = eta_->IsConstant();
-  if (constantEta && RoughDielectric::NearIndexMatch(EvaluateEta(eta_, TextureContext()))) {
+  if (constantEta && NearIndexMatch(EvaluateEta(eta_, TextureContext()))) {
     AddFact(smooth, 0, &facts);
     return facts;
   }

@@ -71,7 +71,9 @@ Bsdf TranslucentMaterial::GetBsdf(const SurfaceInteraction& hit) const {
   bsdf.Add(LambertianReflection{kd * reflect});
   bsdf.Add(LambertianTransmission{kd * transmit});
   if (const std::optional<Ggx> ggx = roughness_.Evaluate(at)) {
-    bsdf.Add(RoughDielectric{*ggx, kTranslucentEta, ks * reflect, ks * transmit});
+    WithMicrofacets(roughness_.Kind(), *ggx, [&](const auto& microfacets) {
+      bsdf.Add(RoughDielectric{microfacets, kTranslucentEta, ks * reflect, ks * transmit});
+    });
   } else {
     bsdf.Add(SmoothDielectric(kTranslucentEta, ks * reflect, ks * transmit));
   }

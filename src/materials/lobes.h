@@ -7,7 +7,7 @@
 //   Pdf(wo, wi)                density per solid angle with which Sample gives wi; 0 for specular lobes
 //   Sample(wo, uc, u, mode)    uc in [0, 1) chooses a branch, u in [0, 1)^2 the direction; nothing where light ends
 //   Albedo(wo)                 an estimate of the hemispherical-directional albedo, positive where Value may be
-//   Roughness()                GGX alpha (the smaller one), 1 for diffuse lobes
+//   Roughness()                GGX's alpha or its like (the smaller one), 1 for diffuse lobes
 // Directions are unit vectors with z != 0. Lobes are opaque to one another; `Bsdf` adds cosines, normals and choice.
 #pragma once
 
@@ -22,10 +22,13 @@
 
 namespace dapple {
 
-using Lobe = std::variant<LambertianReflection, LambertianTransmission, OrenNayarReflection, MirrorReflection,
-                          ConductorReflection, SmoothDielectric, ThinDielectric, PassThrough, CoatReflection,
-                          RoughConductor, RoughDielectricReflection, RoughDielectric, FresnelBlend, CoatedDiffuseBase,
-                          CoatedConductorReflection, CoatedRoughConductor>;
+using Lobe =
+    std::variant<LambertianReflection, LambertianTransmission, OrenNayarReflection, MirrorReflection,
+                 ConductorReflection, SmoothDielectric, ThinDielectric, PassThrough, CoatReflection, CoatedDiffuseBase,
+                 CoatedConductorReflection, CoatedRoughConductor, RoughConductor<Ggx>, RoughConductor<Beckmann>,
+                 RoughConductor<CosinePower>, RoughDielectricReflection<Ggx>, RoughDielectricReflection<Beckmann>,
+                 RoughDielectricReflection<CosinePower>, RoughDielectric<Ggx>, RoughDielectric<Beckmann>,
+                 RoughDielectric<CosinePower>, FresnelBlend<Ggx>, FresnelBlend<Beckmann>, FresnelBlend<CosinePower>>;
 
 static_assert(std::is_trivially_copyable_v<Lobe>, "Bsdf copies lobes as bytes");
 

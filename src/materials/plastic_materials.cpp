@@ -10,7 +10,9 @@ namespace {
 void AddGloss(const Roughness& roughness, const TextureContext& at, const Color& ks, float etaAbove, Bsdf* bsdf) {
   if (ks.IsBlack()) return;
   const Ggx ggx = roughness.Evaluate(at).value_or(Ggx(1e-3f, 1e-3f));
-  bsdf->Add(RoughDielectricReflection{ggx, ks, etaAbove, 1 / etaAbove});
+  WithMicrofacets(roughness.Kind(), ggx, [&](const auto& microfacets) {
+    bsdf->Add(RoughDielectricReflection{microfacets, ks, etaAbove, 1 / etaAbove});
+  });
 }
 
 float GlossAlpha(const Roughness& roughness) { return roughness.IsAlwaysSmooth() ? 1e-3f : roughness.MinAlpha(); }
@@ -46,7 +48,9 @@ Bsdf SubstrateMaterial::GetBsdf(const SurfaceInteraction& hit) const {
   const TextureContext at(hit);
   const Color kd = EvaluateShare(kd_, at, Color()), ks = EvaluateShare(ks_, at, Color());
   if (kd.IsBlack() && ks.IsBlack()) return bsdf;
-  bsdf.Add(FresnelBlend{roughness_.Evaluate(at).value_or(Ggx(1e-3f, 1e-3f)), kd, ks});
+  WithMicrofacets(roughness_.Kind(), roughness_.Evaluate(at).value_or(Ggx(1e-3f, 1e-3f)), [&](const auto& microfacets) {
+    bsdf.Add(FresnelBlend{microfacets, kd, ks});
+  });
   return bsdf;
 }
 

@@ -7,7 +7,7 @@
 
 namespace dapple {
 
-/// pbrt-v3 "plastic": Lambertian `kd` plus a GGX gloss `ks`. As in pbrt-v3, Fresnel is taken from inside (index 1.5 to
+/// pbrt-v3 "plastic": Lambertian `kd` plus a gloss `ks`. As in pbrt-v3, Fresnel is taken from inside (index 1.5 to
 /// 1).
 class PlasticMaterial final : public Material {
  public:

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "src/materials/microfacet.h"
+#include "src/materials/microfacet_kind.h"
 #include "src/materials/texture.h"
 
 namespace dapple {
@@ -21,14 +21,19 @@ class Roughness {
   /// `v` null: as `u`; both null: smooth.
   Roughness(FloatTexturePtr u, FloatTexturePtr v, RoughnessRemap remap);
 
-  /// The distribution at a point; nothing where the surface is effectively smooth (`Ggx::EffectivelySmooth`).
+  /// The distribution that is to have this roughness; GGX unless set.
+  MicrofacetKind Kind() const { return kind_; }
+  void SetKind(MicrofacetKind kind) { kind_ = kind; }
+
+  /// The roughness at a point, as GGX has it (see `WithMicrofacets` for the others); nothing where the surface is
+  /// effectively smooth (`Ggx::EffectivelySmooth`).
   std::optional<Ggx> Evaluate(const TextureContext& at) const;
 
   /// Smooth at every point, as far as constant textures tell.
   bool IsAlwaysSmooth() const;
   /// Rough at every point, as far as constant textures tell.
   bool IsAlwaysRough() const;
-  /// The distribution where it is the same everywhere, and rough.
+  /// The same where it is one everywhere, and rough.
   std::optional<Ggx> Constant() const;
   /// A lower bound of the alphas: exact for constant textures.
   float MinAlpha() const;
@@ -38,6 +43,7 @@ class Roughness {
 
   FloatTexturePtr u_, v_;
   RoughnessRemap remap_ = RoughnessRemap::None;
+  MicrofacetKind kind_ = MicrofacetKind::Ggx;
 };
 
 }  // namespace dapple

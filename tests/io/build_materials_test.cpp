@@ -1,6 +1,7 @@
 // Material statements of both versions: defaults and meanings, seen from the BSDFs they give.
 #include "src/base/numerics.h"
 #include "src/image/image_io.h"
+#include "src/materials/fresnel.h"
 #include "src/materials/named_spectra.h"
 #include "tests/io/build_test_support.h"
 
@@ -214,6 +215,55 @@ TEST(BuildMaterials, UnusedMaterialsAreNotBuilt) {
              4);
 }
 
+TEST(BuildMaterials, DistributionChoosesTheMicrofacets) {
+  const float s = std::sin(0.8f), c = std::cos(0.8f);
+  const Vec3 aside(s, 0, -c), above(0, s, -c);  // as the camera sees the square
+  const auto value = [&](const std::string& parameters, const Vec3& wi) {
+    const Bsdf bsdf =
+        BsdfOf("Material \"conductor\" \"rgb reflectance\" [.9 .9 .9] \"bool remaproughness\" false " + parameters, 4);
+    return bsdf.Eval(kTowardCamera, wi, TransportMode::Radiance).g / c;
+  };
+  const auto expected = [&](const auto& microfacets, const Vec3& wi) {
+    const RoughConductor lobe{microfacets, Color(1), ConductorKFromReflectance(Color(0.9f))};
+    return lobe.Value({0, 0, 1}, wi, TransportMode::Radiance).g;
+  };
+  const auto named = [](const std::string& name) { return "\"string distribution\" \"" + name + "\""; };
+  const std::string rough = "\"float roughness\" .3 ";
+  const Vec3 wi(s, 0, c);
+  EXPECT_NEAR(value(rough, aside) / expected(Ggx(0.3f, 0.3f), wi), 1, 1e-4);
+  EXPECT_NEAR(value(rough + named("ggx"), aside) / expected(Ggx(0.3f, 0.3f), wi), 1, 1e-4);
+  EXPECT_NEAR(value(rough + named("beckmann"), aside) / expected(Beckmann(0.3f, 0.3f), wi), 1, 1e-4);
+  const float exponent = 2 / 0.09f - 2;
+  EXPECT_NEAR(value(rough + named("blinn"), aside) / expected(CosinePower(exponent, exponent), wi), 1, 1e-4);
+  const std::string brushed = "\"float uroughness\" .5 \"float vroughness\" .2 " + named("ashikhminshirley");
+  const CosinePower anisotropic(6, 48);
+  EXPECT_NEAR(value(brushed, aside) * value(brushed, above) /
+                  (expected(anisotropic, wi) * expected(anisotropic, Vec3(0, s, c))),
+              1, 1e-4);
+  EXPECT_GT(std::abs(std::log(value(brushed, aside) / value(brushed, above))), 1);
+}
+
+TEST(BuildMaterials, DistributionIsKnownToAllRoughMaterials) {
+  const Vec3 wi = Normalize(Vec3(0.6f, 0.2f, -0.7f));
+  const std::string one = R"("float roughness" .3)", two = R"("float uroughness" .3 "float vroughness" .3)";
+  const std::pair<std::string, int> materials[] = {{R"("metal" )" + one, 3},       {R"("plastic" )" + one, 3},
+                                                   {R"("substrate" )" + two, 3},   {R"("uber" )" + one, 3},
+                                                   {R"("translucent" )" + one, 3}, {R"("glass" )" + two, 3},
+                                                   {R"("dielectric" )" + one, 4},  {R"("conductor" )" + one, 4}};
+  for (const auto& [material, version] : materials) {
+    const auto value = [&, &text = material, format = version](const std::string& name) {
+      const Bsdf bsdf = BsdfOf("Material " + text + R"( "string distribution" ")" + name + '"', format);
+      return bsdf.Eval(kTowardCamera, wi, TransportMode::Radiance).g;
+    };
+    EXPECT_NE(value("ggx"), value("beckmann")) << material;
+    EXPECT_NE(value("blinn"), value("beckmann")) << material;
+    EXPECT_EQ(value("blinn"), value("ashikhminshirley")) << material << ": isotropic, they are one";
+  }
+  const Built coat = BuildWorld("Material \"coateddiffuse\" \"string distribution\" \"blinn\"\n" + Square(4), 4);
+  ASSERT_EQ(coat.warnings.size(), 1u);
+  EXPECT_NE(coat.warnings[0].find("distribution"), std::string::npos);
+}
+
 TEST(BuildMaterials, ErrorsHaveAPlace) {
   const auto error = [](const std::string& text) { return WorldError(text + "\n" + Square(4), 4); };
   EXPECT_EQ(error(R"(Material "difuse")").substr(0, 46), "a.pbrt:5:1: error: unknown material \"difuse\", ");
@@ -229,6 +279,9 @@ NamedMaterial "m")"),
   EXPECT_EQ(error(R"(Material "diffuse" "string reflectance" "red")").substr(0, 18), "a.pbrt:5:20: error");
   EXPECT_EQ(error(R"(Material "conductor" "rgb eta" [1 1 1] "rgb reflectance" [1 1 1])").substr(0, 18),
             "a.pbrt:5:40: error");
+  EXPECT_EQ(error(R"(Material "conductor" "string distribution" "bekmann")"),
+            "a.pbrt:5:22: error: unknown microfacet distribution \"bekmann\", expected one of ggx, beckmann, blinn, "
+            "ashikhminshirley; did you mean \"beckmann\"?");
 }
 
 }  // namespace

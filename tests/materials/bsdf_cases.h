@@ -1,6 +1,7 @@
 // BSDFs to be tested: every lobe alone, and the mixtures that materials make, in straight and in bent shading frames.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct WeightedLobes {
   float etaBelow = 1;  ///< index on the side that ng does not point to, over the other side's
 };
 
+/// In messages of failing tests.
+inline void PrintTo(const WeightedLobes& lobes, std::ostream* out) { *out << lobes.name; }
+
 /// A BSDF of lobes that are not specular in part at least.
 inline std::vector<WeightedLobes> NonSpecularCases() {
   const Color gray(0.6f, 0.5f, 0.4f), eta(0.2f, 0.9f, 1.1f), k(3.9f, 2.45f, 2.14f);
@@ -26,12 +30,26 @@ inline std::vector<WeightedLobes> NonSpecularCases() {
       {"OrenNayar", {{OrenNayarReflection(gray, 40), Color(1)}}},
       {"RoughConductor", {{RoughConductor{Ggx(0.3f, 0.3f), eta, k}, Color(1)}}},
       {"AnisotropicConductor", {{RoughConductor{Ggx(0.15f, 0.5f), eta, k}, Color(0.7f)}}},
+      {"SharpConductor", {{RoughConductor{Ggx(0.08f, 0.08f), eta, k}, Color(1)}}},
+      {"BeckmannConductor", {{RoughConductor{Beckmann(0.3f, 0.3f), eta, k}, Color(1)}}},
+      {"AnisotropicBeckmannConductor", {{RoughConductor{Beckmann(0.15f, 0.5f), eta, k}, Color(1)}}},
+      {"SharpBeckmannConductor", {{RoughConductor{Beckmann(0.08f, 0.08f), eta, k}, Color(1)}}},
+      {"BlinnConductor", {{RoughConductor{CosinePower(20, 20), eta, k}, Color(1)}}},
+      {"SharpBlinnConductor", {{RoughConductor{CosinePower(300, 300), eta, k}, Color(1)}}},
+      {"AshikhminShirleyConductor", {{RoughConductor{CosinePower(80, 8), eta, k}, Color(1)}}},
       {"DielectricGloss", {{RoughDielectricReflection{Ggx(0.25f, 0.4f), gray, 1.5f, 1 / 1.5f}, Color(1)}}},
       {"PlasticGloss", {{RoughDielectricReflection{Ggx(0.3f, 0.3f), gray, 1 / 1.5f, 1.5f}, Color(1)}}},
+      {"BeckmannGloss", {{RoughDielectricReflection{Beckmann(0.4f, 0.2f), Color(1), 1.5f, 1 / 1.5f}, Color(1)}}},
+      {"BlinnGloss", {{RoughDielectricReflection{CosinePower(10, 10), Color(1), 1.5f, 1 / 1.5f}, Color(1)}}},
       {"RoughGlass", {{RoughDielectric{Ggx(0.3f, 0.3f), 1.5f, Color(1), Color(1)}, Color(1)}}, 1.5f},
       {"AnisotropicGlass", {{RoughDielectric{Ggx(0.2f, 0.5f), 1.33f, gray, Color(0.9f)}, Color(1)}}, 1.33f},
       {"AirInGlass", {{RoughDielectric{Ggx(0.4f, 0.4f), 1 / 1.5f, Color(1), Color(1)}, Color(1)}}, 1 / 1.5f},
+      {"BeckmannGlass", {{RoughDielectric{Beckmann(0.4f, 0.2f), 1.5f, Color(1), Color(1)}, Color(1)}}, 1.5f},
+      {"BlinnGlass", {{RoughDielectric{CosinePower(20, 20), 1.5f, Color(1), Color(1)}, Color(1)}}, 1.5f},
+      {"AshikhminShirleyGlass", {{RoughDielectric{CosinePower(50, 6), 1.33f, gray, Color(0.9f)}, Color(1)}}, 1.33f},
       {"FresnelBlend", {{FresnelBlend{Ggx(0.2f, 0.4f), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
+      {"BeckmannFresnelBlend", {{FresnelBlend{Beckmann(0.3f, 0.3f), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
+      {"AshikhminShirleyFresnelBlend", {{FresnelBlend{CosinePower(60, 10), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
       {"RoughCoatedDiffuseBase", {{CoatedDiffuseBase(gray, 1.5f, 0.3f, kRoughCoat), Color(1)}}},
       {"CoatedDiffuseBase", {{CoatedDiffuseBase(gray, 1.5f, fe), Color(1)}}},
       {"CoatedRoughConductor", {{CoatedRoughConductor{Ggx(0.3f, 0.3f), 1.5f, eta / 1.5f, k / 1.5f}, Color(1)}}},
@@ -48,6 +66,32 @@ inline std::vector<WeightedLobes> NonSpecularCases() {
         {LambertianTransmission{gray}, Color(0.3f)},
         {RoughDielectric{Ggx(0.35f, 0.35f), 1.5f, Color(0.5f), Color(0.5f)}, Color(0.5f)}},
        1.5f},
+  };
+}
+
+/// A specular lobe; `isLossless` where all of the flux goes on, whatever its direction.
+struct SpecularCase {
+  std::string name;
+  Lobe lobe;
+  bool isLossless;
+};
+
+inline void PrintTo(const SpecularCase& lobe, std::ostream* out) { *out << lobe.name; }
+
+inline std::vector<SpecularCase> SpecularCases() {
+  const Color gray(0.6f, 0.5f, 0.4f), eta(0.2f, 0.9f, 1.1f), k(3.9f, 2.45f, 2.14f);
+  return {
+      {"Mirror", MirrorReflection(Color(1)), true},
+      {"GrayMirror", MirrorReflection(gray), false},
+      {"SmoothConductor", ConductorReflection(eta, k), false},
+      {"SmoothGlass", SmoothDielectric(1.5f), true},
+      {"SmoothAirInGlass", SmoothDielectric(1 / 1.33f), true},
+      {"NoInterface", SmoothDielectric(1), true},
+      {"TintedGlass", SmoothDielectric(1.5f, gray, Color(0.9f, 0.7f, 0.5f)), false},
+      {"ThinGlass", ThinDielectric(1.5f), true},
+      {"PassThrough", PassThrough(), true},
+      {"CoatReflection", CoatReflection(1.5f), false},
+      {"CoatedSmoothConductor", CoatedConductorReflection(1.5f, eta / 1.5f, k / 1.5f), false},
   };
 }
 

@@ -18,9 +18,9 @@ using testing::WeightedLobes;
 
 constexpr TransportMode kModes[] = {TransportMode::Radiance, TransportMode::Importance};
 constexpr float kTilts[] = {0, 0.4f};
-/// Above and below the surface; the last two of which a tilted shading normal sees from the other side.
-const Vec3 kOutgoing[] = {Direction(0.9f, 0.3f), Direction(0.4f, 2), Direction(-0.6f, 4), Direction(0.15f, 3.9f),
-                          Direction(-0.2f, 0.5f)};
+/// Above and below the surface, down to grazing; numbers 3 and 4 a tilted shading normal sees from the other side.
+const Vec3 kOutgoing[] = {Direction(0.9f, 0.3f),  Direction(0.4f, 2),     Direction(-0.6f, 4),
+                          Direction(0.15f, 3.9f), Direction(-0.2f, 0.5f), Direction(0.04f, 1.2f)};
 
 std::mt19937_64 Random(uint64_t seed) { return std::mt19937_64(seed); }
 double Uniform(std::mt19937_64& random) { return std::uniform_real_distribution<double>(0, 1)(random); }
@@ -36,13 +36,13 @@ INSTANTIATE_TEST_SUITE_P(Lobes, NonSpecularBsdf, ::testing::ValuesIn(testing::No
 
 TEST_P(NonSpecularBsdf, SamplesFollowThePdf) {
   // One percent for all lobes, modes, frames and directions together.
-  const int tests = static_cast<int>(testing::NonSpecularCases().size() * 2 * std::size(kTilts) * 3);
+  const int tests = static_cast<int>(testing::NonSpecularCases().size() * std::size(kTilts) * (4 + 3));
   const double level = testing::SidakLevel(0.01, tests);
   uint64_t seed = 100;
   for (const float tilt : kTilts) {
     const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
     for (const TransportMode mode : kModes) {
-      for (const int i : mode == TransportMode::Radiance ? std::array{0, 2, 3} : std::array{1, 2, 4}) {
+      for (const int i : mode == TransportMode::Radiance ? std::vector{0, 2, 3, 5} : std::vector{1, 2, 4}) {
         const Vec3 wo = kOutgoing[i];
         const auto sample = [&](double uc, const Vec2d& u) -> std::optional<Vec3> {
           const auto s = bsdf.Sample(wo, uc, u, mode);
@@ -120,24 +120,6 @@ TEST_P(NonSpecularBsdf, IsReciprocal) {
   }
 }
 
-TEST_P(NonSpecularBsdf, ReflectsNoMoreThanArrives) {
-  // Flux on the light's side (importance): no more leaves than came, whatever the indices.
-  if (GetParam().name == "PlasticGloss" || GetParam().name == "Plastic") return;  // pbrt-v3's is no energy model
-  const Bsdf bsdf = MakeBsdf(GetParam(), 0);
-  auto random = Random(8);
-  for (const Vec3& wo : kOutgoing) {
-    Color sum;
-    constexpr int kSamples = 20'000;
-    for (int i = 0; i < kSamples; ++i) {
-      const double uc = Uniform(random);
-      const auto s = bsdf.Sample(wo, uc, {Uniform(random), Uniform(random)}, TransportMode::Importance);
-      if (s) sum += s->weight;
-    }
-    EXPECT_LE((sum / kSamples).MaxComponent(), 1.01f) << wo.z;
-    EXPECT_GT((sum / kSamples).MaxComponent(), 0.01f) << wo.z;
-  }
-}
-
 TEST_P(NonSpecularBsdf, SamplingAndQuadratureAgree) {
   const Bsdf bsdf = MakeBsdf(GetParam(), 0.4f);
   auto random = Random(9);
@@ -155,7 +137,7 @@ TEST_P(NonSpecularBsdf, SamplingAndQuadratureAgree) {
     const double mean = sum / kSamples, sigma = std::sqrt((sumOfSquares / kSamples - mean * mean) / kSamples);
     const double expected =
         testing::IntegrateSphere([&](const Vec3& wi) { return static_cast<double>(bsdf.Eval(wo, wi, mode).g); });
-    // Sixteen lobes, two modes: five sigma is one in a hundred thousand.
+    // Under thirty BSDFs, two modes: five sigma is one in twenty-five thousand for all of them.
     EXPECT_NEAR(mean, expected, 5 * sigma + 1e-3 * expected);
   }
 }
@@ -187,28 +169,6 @@ TEST(Bsdf, NothingLeaksThroughAnOpaqueSurface) {
       if (s) {
         EXPECT_GT(s->wi.z * wo.z, 0);
       }
-    }
-  }
-}
-
-TEST(Bsdf, LosslessGlassKeepsAllFlux) {
-  auto random = Random(11);
-  for (const Lobe& lobe : {Lobe(SmoothDielectric(1.5f)), Lobe(SmoothDielectric(1 / 1.33f)), Lobe(ThinDielectric(1.5f)),
-                           Lobe(MirrorReflection(Color(1))), Lobe(PassThrough()), Lobe(SmoothDielectric(1))}) {
-    Bsdf bsdf(TiltedHit(0));
-    bsdf.Add(lobe);
-    EXPECT_TRUE(bsdf.IsPurelySpecular());
-    for (int i = 0; i < 500; ++i) {
-      const Vec3 wo = UniformDirection(random);
-      const auto flux = bsdf.Sample(wo, Uniform(random), {0.5, 0.5}, TransportMode::Importance);
-      ASSERT_TRUE(flux);
-      EXPECT_NEAR(flux->weight.g, 1, 1e-6f);  // every walk goes on with all that it carries
-      const auto radiance = bsdf.Sample(wo, Uniform(random), {0.5, 0.5}, TransportMode::Radiance);
-      ASSERT_TRUE(radiance);
-      EXPECT_NEAR(radiance->weight.g * Sqr(radiance->eta), 1, 2e-6f);
-      EXPECT_EQ(radiance->flags.HasTransmission(), radiance->wi.z * wo.z < 0);
-      EXPECT_TRUE(bsdf.Eval(wo, flux->wi, TransportMode::Radiance).IsBlack());
-      EXPECT_EQ(bsdf.Pdf(wo, flux->wi, TransportMode::Radiance), 0);
     }
   }
 }
