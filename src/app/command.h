@@ -18,5 +18,6 @@ using Action = std::function<int()>;
 /// Each adds its subcommand to the program; where it is the one called, parsing sets `*action`, which must outlive it.
 void AddRenderCommand(CLI::App& program, Action* action);
 void AddInfoCommand(CLI::App& program, Action* action);
+void AddEmitCommand(CLI::App& program, Action* action);
 
 }  // namespace dapple

@@ -30,6 +30,19 @@ std::string LightsByKind(const Scene& scene) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// Each with the number that names it, as many as one cares to read.
+void PrintLights(const Scene& scene) {
+  constexpr size_t kMost = 12;
+  const size_t count = scene.Lights().size(), shown = std::min(count, kMost);
+  for (size_t i = 0; i < shown; ++i) {
+    const Light& light = *scene.Lights()[i];
+    const Color power = light.Power();
+    PrintLine("",
+              fmt::format("light {}: {}, power {:.4g} {:.4g} {:.4g} W", i, light.Name(), power.r, power.g, power.b));
+  }
+  if (count > shown) PrintLine("", fmt::format("and {} more", count - shown));
+}
+
 std::string DescribeSurfaces(const SceneFacts& facts) {
   std::vector<std::string> parts;
   if (facts.hasSpecular) parts.emplace_back("smooth mirrors, metals or glass");
@@ -48,6 +61,7 @@ void PrintContents(const Scene& scene) {
                                     FormatNumberOf(facts.primitives, "primitive", "primitives"),
                                     FormatNumberOf(facts.instances, "instance", "instances")));
   PrintLine("lights", facts.EmitsLight() ? LightsByKind(scene) : "none: the picture will be black");
+  PrintLights(scene);
   PrintLine("surfaces", DescribeSurfaces(facts));
 }
 

@@ -70,27 +70,22 @@ DirectTechnique ParseDirect(const std::string& text) {
   throw CLI::ValidationError("--direct", fmt::format("expected mis, light or bsdf, not '{}'", text));
 }
 
+constexpr const char* kSceneGroup = "Scene";
+
 void AddSceneGroup(CLI::App* command, SceneOptions* options) {
-  command->add_option("scene", options->scene, "The scene: a .pbrt or .pbrt.gz file")->required()->type_name("FILE");
-  const std::string group = "Scene";
-  command
-      ->add_option("--pbrt-version", options->pbrtVersion,
-                   "Read the file as of this version of pbrt; found from the text otherwise")
-      ->check(CLI::IsMember({3, 4}).description(""))
-      ->type_name("3|4")
-      ->group(group);
+  options->AddFileTo(command);
   command
       ->add_option_function<std::string>(
           "--resolution", [options](const std::string& text) { options->resolution = ParseResolution(text); },
           "Size of the picture in pixels")
       ->type_name("WxH")
-      ->group(group);
+      ->group(kSceneGroup);
   command
       ->add_option_function<std::string>(
           "--crop", [options](const std::string& text) { options->crop = ParseCrop(text); },
           "The part to render, in fractions of the picture")
       ->type_name("X0,X1,Y0,Y1")
-      ->group(group);
+      ->group(kSceneGroup);
 }
 
 void AddRenderGroup(CLI::App* command, SceneOptions* options) {
@@ -176,6 +171,16 @@ void WarnOfLackingIntegrator(const RenderSettings& settings, const IntegratorCho
 }
 
 }  // namespace
+
+void SceneOptions::AddFileTo(CLI::App* command) {
+  command->add_option("scene", scene, "The scene: a .pbrt or .pbrt.gz file")->required()->type_name("FILE");
+  command
+      ->add_option("--pbrt-version", pbrtVersion,
+                   "Read the file as of this version of pbrt; found from the text otherwise")
+      ->check(CLI::IsMember({3, 4}).description(""))
+      ->type_name("3|4")
+      ->group(kSceneGroup);
+}
 
 void SceneOptions::AddTo(CLI::App* command) {
   AddSceneGroup(command, this);

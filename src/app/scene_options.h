@@ -1,4 +1,5 @@
-// What `render` and `info` share: the options that change a scene or how it is rendered, and the plan that follows.
+// What the subcommands share that read a scene: the options that change a scene or how it is rendered, and the plan
+// that follows.
 //
 //   SceneOptions options;
 //   options.AddTo(command);                         // before parsing
@@ -40,6 +41,8 @@ struct SceneOptions {
   int threads = 0;  ///< 0: one a processor
 
   void AddTo(CLI::App* command);
+  /// Only the scene and the version of its format.
+  void AddFileTo(CLI::App* command);
 };
 
 /// A scene and what its file was.

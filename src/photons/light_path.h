@@ -15,13 +15,18 @@ struct LightVertex {
   bool isCaustic;  ///< there were some, and all of them were specular
 };
 
-/// The ray with which a light path begins. Uses block 0 of the sampler.
-inline std::optional<EmissionSample> EmitPhoton(const EmissionSampler& emission, Sampler& sampler) {
+/// The random numbers of the ray with which a light path begins. Uses block 0 of the sampler.
+inline LeRandom EmissionNumbers(Sampler& sampler) {
   LeRandom u;
   u.direction = sampler.Get2D();
   u.position = sampler.Get2D();
   u.part = sampler.Get1D();
-  return emission.Sample(u);
+  return u;
+}
+
+/// The ray with which a light path begins.
+inline std::optional<EmissionSample> EmitPhoton(const EmissionSampler& emission, Sampler& sampler) {
+  return emission.Sample(EmissionNumbers(sampler));
 }
 
 /// Walks on from an emitted photon and calls `visit(const LightVertex&)` at each surface it meets, black ones excepted.

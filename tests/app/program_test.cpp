@@ -2,6 +2,8 @@
 #include "tests/app/program.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -19,7 +21,7 @@ using Program = ProgramTest;
 TEST_F(Program, HelpNamesTheSubcommandsAndExitCodes) {
   const ProgramResult result = Run("--help");
   EXPECT_EQ(result.exitCode, 0);
-  for (const char* text : {"render", "info", "Exit codes"}) EXPECT_TRUE(Contains(result.out, text));
+  for (const char* text : {"render", "info", "emit", "Exit codes"}) EXPECT_TRUE(Contains(result.out, text));
   EXPECT_TRUE(Contains(Run("render --help").out, "--integrator"));
   EXPECT_TRUE(Contains(Run("info --help").out, "--pbrt-version"));
 }
@@ -73,7 +75,11 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
                                 "tiny.pbrt --radius nan",
                                 "tiny.pbrt --photons 0",
                                 "tiny.pbrt --max-depth -1",
-                                "info"}) {
+                                "info",
+                                "emit tiny.pbrt",
+                                "emit tiny.pbrt --rays 0 -o a.csv",
+                                "emit tiny.pbrt --light -1 -o a.csv",
+                                "emit tiny.pbrt --light x -o a.csv"}) {
     const ProgramResult result = Run(arguments);
     EXPECT_EQ(result.exitCode, 2) << arguments;
     EXPECT_TRUE(BeginsWith(result.err, "error: ")) << arguments;
@@ -279,12 +285,76 @@ TEST_F(Program, InfoSaysWhatIsThereAndWhatFollows) {
   WriteScene("tiny.pbrt");
   const ProgramResult result = Run("info tiny.pbrt");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  for (const char* text : {"pbrt version 4: ", "2 shapes", "1 point", "24 x 16 pixels",
-                           "sppm: ", "4 passes (the scene's samples a pixel)", "skips"})
+  for (const char* text :
+       {"pbrt version 4: ", "2 shapes", "1 point", "24 x 16 pixels", "light 0: point, power 377 377 377 W",
+        "sppm: ", "4 passes (the scene's samples a pixel)", "skips"})
     EXPECT_TRUE(Contains(result.out, text));
   EXPECT_FALSE(Exists("tiny.exr")) << "info renders nothing";
   EXPECT_TRUE(Contains(Run("info tiny.pbrt --integrator path --passes 7").out, "7 passes (asked for)"));
   EXPECT_TRUE(Contains(Run("info tiny.pbrt --pbrt-version 4").out, "pbrt version 4: asked for"));
+}
+
+/// The numbers of a CSV file's column.
+std::vector<double> ColumnOf(const std::string& csv, const std::string& column) {
+  std::istringstream lines(csv);
+  std::string line, cell;
+  std::getline(lines, line);
+  std::istringstream header(line);
+  int index = 0;
+  while (std::getline(header, cell, ',') && cell != column) ++index;
+  std::vector<double> numbers;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    for (int i = 0; i <= index; ++i) std::getline(cells, cell, ',');
+    numbers.push_back(std::stod(cell));
+  }
+  return numbers;
+}
+
+TEST_F(Program, EmittedRaysCarryThePowerOfTheLights) {
+  // A point light of 4 pi I = 377 W and, two-sided, a square of side 2: 2 pi L A = 50.3 W (green).
+  WriteScene("tiny.pbrt");
+  Write("two.pbrt", Read("tiny.pbrt") +
+                        "AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] \"bool twosided\" true\n"
+                        "Shape \"bilinearmesh\" \"point3 P\" [0 5 0  2 5 0  0 5 2  2 5 2]\n");
+  const ProgramResult result = Run("emit two.pbrt --rays 4000 --seed 5 -o rays.csv");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_TRUE(BeginsWith(result.out, "rays.csv\nrays      4000 rays of 2 lights\n"));
+  const std::string csv = Read("rays.csv");
+  const std::vector<double> flux = ColumnOf(csv, "flux_g"), light = ColumnOf(csv, "light");
+  ASSERT_EQ(flux.size(), 4000u);
+  double sum = 0, squares = 0;
+  for (const double f : flux) sum += f, squares += f * f;
+  const double power = 4 * 3.14159265 * 30 + 2 * 3.14159265 * 4 * 2;
+  const double standardError = std::sqrt(std::max(0.0, squares - sum * sum / 4000));
+  EXPECT_NEAR(sum, power, 4 * standardError + 1e-5 * power);
+  EXPECT_LT(standardError, 0.01 * power);
+  EXPECT_GT(std::ranges::count(light, 1.0), 300);
+  // The same seed, the same file; another light, another file.
+  ASSERT_EQ(Run("emit two.pbrt --rays 4000 --seed 5 -o again.csv --threads 1").exitCode, 0);
+  EXPECT_EQ(Read("again.csv"), csv);
+  ASSERT_EQ(Run("emit two.pbrt --rays 100 --light 1 -o one.json").exitCode, 0);
+  const auto json = nlohmann::json::parse(Read("one.json"));
+  for (const auto& row : json["data"]) EXPECT_EQ(row[1], "area");
+  ASSERT_EQ(Run("emit two.pbrt --rays 100 -o rays.ply").exitCode, 0);
+  EXPECT_TRUE(BeginsWith(Read("rays.ply"), "ply\n"));
+}
+
+TEST_F(Program, EmitSaysWhatItCannotDo) {
+  WriteScene("tiny.pbrt");
+  const auto error = [&](const std::string& arguments) {
+    const ProgramResult result = Run("emit tiny.pbrt " + arguments);
+    EXPECT_EQ(result.exitCode, 1);
+    return result.err;
+  };
+  EXPECT_EQ(error("--light 1 -o a.csv"),
+            "tiny.pbrt: error: light 1 is not there: expected one of 0 to 0, as `dapple info` lists them\n");
+  EXPECT_EQ(error("-o a.txt"), "a.txt: error: expected a file name that ends in .csv, .json or .ply\n");
+  EXPECT_TRUE(BeginsWith(error("-o no/a.csv"), "no/a.csv: error: the folder 'no' does not exist"));
+  Write("dark.pbrt", "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+  EXPECT_TRUE(Contains(Run("emit dark.pbrt -o a.csv").err,
+                       "dark.pbrt: error: none of the scene's lights emits anything: there are no rays\n"));
+  EXPECT_FALSE(Exists("a.csv"));
 }
 
 }  // namespace

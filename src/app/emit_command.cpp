@@ -1,0 +1,106 @@
+// `dapple emit`: the rays that a scene's lights emit, as a table.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include <CLI/App.hpp>
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+
+#include "src/app/command.h"
+#include "src/app/format.h"
+#include "src/app/scene_options.h"
+#include "src/base/parallel.h"
+#include "src/image/atomic_file.h"
+#include "src/io/build_context.h"
+#include "src/render/emitted_rays.h"
+#include "src/render/output.h"
+
+namespace dapple {
+
+namespace {
+
+/// Some gigabytes of text.
+constexpr int kMostRays = 10'000'000;
+
+struct EmitCommandOptions {
+  SceneOptions scene;
+  EmitOptions emit;
+  std::string output;
+  int threads = 0;
+};
+
+using RayFormat = std::string (*)(const Scene&, const EmittedRays&);
+
+RayFormat FormatOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".csv") return RaysToCsv;
+  if (extension == ".json") return RaysToJson;
+  if (extension == ".ply") return RaysToPly;
+  throw Error(FileLocation(path), "expected a file name that ends in .csv, .json or .ply");
+}
+
+/// The power of what the rays were drawn from.
+Color PowerOf(const Scene& scene, const std::optional<int>& light) {
+  if (light) return scene.Lights()[static_cast<size_t>(*light)]->Power();
+  Color sum;
+  for (const auto& one : scene.Lights()) sum += one->Power();
+  return sum;
+}
+
+int RunEmit(const EmitCommandOptions& options) {
+  const RayFormat format = FormatOf(options.output);
+  CheckFolder(options.output);
+  const ThreadLimit threads(options.threads);
+  Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  const LoadedScene loaded = Load(options.scene, diagnostics);
+  const Scene& scene = *loaded.scene;
+  const EmittedRays emitted =
+      AtLocation(FileLocation(options.scene.scene), [&] { return EmitRays(scene, options.emit); });
+  WriteFileAtomically(options.output, format(scene, emitted));
+
+  Color flux;
+  for (const EmittedRay& ray : emitted.rays) flux += ray.flux;
+  const Color power = PowerOf(scene, options.emit.light);
+  fmt::print("{}\n", options.output);
+  fmt::print("rays      {} of {}\n", FormatNumberOf(static_cast<int64_t>(emitted.rays.size()), "ray", "rays"),
+             options.emit.light ? fmt::format("light {}", *options.emit.light)
+                                : FormatNumberOf(static_cast<int64_t>(scene.Lights().size()), "light", "lights"));
+  fmt::print("flux      {:.6g} {:.6g} {:.6g} W together\n", flux.r, flux.g, flux.b);
+  fmt::print("power     {:.6g} {:.6g} {:.6g} W\n", power.r, power.g, power.b);
+  return kExitSuccess;
+}
+
+}  // namespace
+
+void AddEmitCommand(CLI::App& program, Action* action) {
+  CLI::App* const command = program.add_subcommand("emit", "Write the rays that a scene's lights emit to a table");
+  const auto options = std::make_shared<EmitCommandOptions>();
+  options->scene.AddFileTo(command);
+  command->add_option("-o,--output", options->output, "The table: .csv, .json or .ply")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  command->add_option("--rays", options->emit.count, "Emit N rays; 1000 by default")
+      ->check(CLI::Range(1, kMostRays).description(""))
+      ->type_name("N");
+  command
+      ->add_option(
+          "--light", options->emit.light,
+          "Of this light only, by the number that `dapple info` shows; otherwise each ray is of a light chosen "
+          "by power")
+      ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
+      ->type_name("K");
+  command->add_option("--seed", options->emit.seed, "Seed of all random numbers")->type_name("S");
+  command
+      ->add_option("--threads", options->threads, "Threads; 0: one a processor. The rays are the same with any number")
+      ->check(CLI::Range(0, kMaxThreads).description(""))
+      ->type_name("N");
+  command->callback([options, action] { *action = [options] { return RunEmit(*options); }; });
+}
+
+}  // namespace dapple
