@@ -40,6 +40,17 @@ double HaversineOf(const Vec3d& w) { return w.z > 0 ? (w.x * w.x + w.y * w.y) / 
 
 }  // namespace
 
+Vec2d EnvironmentSquareAt(EnvironmentMapping mapping, const Vec3d& w) {
+  if (mapping == EnvironmentMapping::EqualArea) return EqualAreaSphereToSquare(w);
+  return {TurnOf(w.x, w.y), std::atan2(std::hypot(w.x, w.y), w.z) / kPiD};
+}
+
+Vec3d EnvironmentDirectionAt(EnvironmentMapping mapping, const Vec2d& p) {
+  if (mapping == EnvironmentMapping::EqualArea) return EqualAreaSquareToSphere(p);
+  const double theta = kPiD * p.y, phi = 2 * kPiD * p.x;
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
 EnvironmentMap::EnvironmentMap(const Image& image, EnvironmentMapping mapping, const Color& scale)
     : mapping_(mapping), width_(image.Width()), height_(image.Height()) {
   if (width_ < 1 || height_ < 1) throw Error("environment map without pixels: expected at least one");
@@ -189,9 +200,7 @@ double EnvironmentMap::LatticeY(int j) const { return j == 0 ? 0 : (j > height_ 
 
 EnvironmentPlace EnvironmentMap::PlaceOf(const Vec3d& w) const {
   const Vec3d unit = Normalize(w);
-  const bool isLatLong = mapping_ == EnvironmentMapping::LatLong;
-  const Vec2d p = isLatLong ? Vec2d(TurnOf(unit.x, unit.y), std::atan2(std::hypot(unit.x, unit.y), unit.z) / kPiD)
-                            : EqualAreaSphereToSquare(unit);
+  const Vec2d p = EnvironmentSquareAt(mapping_, unit);
   EnvironmentPlace place;
   place.cell = Vec2i(std::clamp(static_cast<int>(p.x * width_ + 0.5), 0, width_),
                      std::clamp(static_cast<int>(p.y * height_ + 0.5), 0, height_));
@@ -199,7 +208,7 @@ EnvironmentPlace EnvironmentMap::PlaceOf(const Vec3d& w) const {
   place.t = Vec2d(std::clamp((p.x - x0) / (LatticeX(place.cell.x + 1) - x0), 0.0, 1.0),
                   std::clamp((p.y - y0) / (LatticeY(place.cell.y + 1) - y0), 0.0, 1.0));
   place.s = place.t;
-  if (isLatLong) {
+  if (mapping_ == EnvironmentMapping::LatLong) {
     const size_t j = static_cast<size_t>(place.cell.y);
     const double share = (HaversineOf(unit) - haversine_[j]) / (haversine_[j + 1] - haversine_[j]);
     place.s.y = std::clamp(share, 0.0, 1.0);

@@ -32,6 +32,10 @@ enum class EnvironmentMapping {
   EqualArea,
 };
 
+/// Where the image shows the unit direction `w`, in [0, 1]^2 from its upper left corner; and the direction shown there.
+Vec2d EnvironmentSquareAt(EnvironmentMapping mapping, const Vec3d& w);
+Vec3d EnvironmentDirectionAt(EnvironmentMapping mapping, const Vec2d& p);
+
 /// Radiance from a direction with the density at which that direction is drawn.
 struct EnvironmentValue {
   Color L;

@@ -19,5 +19,6 @@ using Action = std::function<int()>;
 void AddRenderCommand(CLI::App& program, Action* action);
 void AddInfoCommand(CLI::App& program, Action* action);
 void AddEmitCommand(CLI::App& program, Action* action);
+void AddEnvmapCommand(CLI::App& program, Action* action);
 
 }  // namespace dapple
