@@ -100,7 +100,8 @@ void DrawDot(const Vec2d& at, Image* picture) {
 
 }  // namespace
 
-Image DensityPicture(const EnvironmentMap& map, EnvironmentMapping mapping) {
+Image DensityPicture(const EnvironmentMap& map) {
+  const EnvironmentMapping mapping = map.Mapping();
   const Vec2i size = PictureSize(mapping);
   Image picture = Image::Rgb(size.x + kGap + kMarginalWidth, size.y);
   Marginal marginal{std::vector<double>(static_cast<size_t>(size.y)), std::vector<double>(static_cast<size_t>(size.y))};
@@ -120,7 +121,8 @@ Image DensityPicture(const EnvironmentMap& map, EnvironmentMapping mapping) {
   return picture;
 }
 
-Image SamplesPicture(const EnvironmentMap& map, EnvironmentMapping mapping, int count, int seed) {
+Image SamplesPicture(const EnvironmentMap& map, int count, int seed) {
+  const EnvironmentMapping mapping = map.Mapping();
   const Vec2i size = PictureSize(mapping);
   Image picture = Image::Rgb(size.x, size.y);
   ParallelFor(size.y, [&](int64_t row) {

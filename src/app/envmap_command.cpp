@@ -103,11 +103,11 @@ int RunEnvmap(const EnvmapOptions& options) {
     throw Error(FileLocation(options.file), "the map is black: no directions are drawn from it, expected some light");
   }
   if (!options.densityImage.empty()) {
-    WriteOutput(options.densityImage, DensityPicture(map, chosen.mapping), {});
+    WriteOutput(options.densityImage, DensityPicture(map), {});
     fmt::print("{}\n", options.densityImage);
   }
   if (!options.sampleImage.empty()) {
-    WriteOutput(options.sampleImage, SamplesPicture(map, chosen.mapping, options.samples, options.seed), {});
+    WriteOutput(options.sampleImage, SamplesPicture(map, options.samples, options.seed), {});
     fmt::print("{}\n", options.sampleImage);
   }
   return kExitSuccess;

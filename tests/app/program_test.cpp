@@ -21,7 +21,7 @@ using Program = ProgramTest;
 TEST_F(Program, HelpNamesTheSubcommandsAndExitCodes) {
   const ProgramResult result = Run("--help");
   EXPECT_EQ(result.exitCode, 0);
-  for (const char* text : {"render", "info", "emit", "Exit codes"}) EXPECT_TRUE(Contains(result.out, text));
+  for (const char* text : {"render", "info", "emit", "envmap", "Exit codes"}) EXPECT_TRUE(Contains(result.out, text));
   EXPECT_TRUE(Contains(Run("render --help").out, "--integrator"));
   EXPECT_TRUE(Contains(Run("info --help").out, "--pbrt-version"));
 }
@@ -79,7 +79,11 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
                                 "emit tiny.pbrt",
                                 "emit tiny.pbrt --rays 0 -o a.csv",
                                 "emit tiny.pbrt --light -1 -o a.csv",
-                                "emit tiny.pbrt --light x -o a.csv"}) {
+                                "emit tiny.pbrt --light x -o a.csv",
+                                "envmap",
+                                "envmap a.exr --mapping cube",
+                                "envmap a.exr --samples 10",
+                                "envmap a.exr --samples 0 --sample-image a.png"}) {
     const ProgramResult result = Run(arguments);
     EXPECT_EQ(result.exitCode, 2) << arguments;
     EXPECT_TRUE(BeginsWith(result.err, "error: ")) << arguments;
@@ -355,6 +359,48 @@ TEST_F(Program, EmitSaysWhatItCannotDo) {
   EXPECT_TRUE(Contains(Run("emit dark.pbrt -o a.csv").err,
                        "dark.pbrt: error: none of the scene's lights emits anything: there are no rays\n"));
   EXPECT_FALSE(Exists("a.csv"));
+}
+
+TEST_F(Program, EnvmapTellsAndDrawsWhatAMapIsLike) {
+  Image map = Image::Rgb(16, 8);
+  for (float& value : map.Values()) value = 2;
+  map.SetColor(3, 4, Color(-1, 2, 2));
+  WriteExr(Path("map.exr"), map);
+  const ProgramResult result =
+      Run("envmap map.exr --pdf-image density.png --samples 200 --sample-image samples.png --seed 3");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  for (const char* text : {"image     16 x 8 pixels, channels R G B\n", "latitude-longitude (the image is not square)",
+                           "repaired  1 pixel (", "greatest 2 2 2\n", "integral  ", "density.png\nsamples.png\n"}) {
+    EXPECT_TRUE(Contains(result.out, text));
+  }
+  // Nearly even: the density is that of the sphere, of one colour, and all its rows are alike but for their length.
+  const Image density = ReadImage(Path("density.png")), samples = ReadImage(Path("samples.png"));
+  EXPECT_GT(density.Width(), samples.Width());
+  EXPECT_EQ(density.Height(), samples.Height());
+  EXPECT_EQ(samples.Width(), 2 * samples.Height());
+  for (const Vec2i& p : {Vec2i(900, 10), Vec2i(700, 256), Vec2i(900, 500)}) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(density.At(p.x, p.y, c), density.At(600, 100, c), 0.02f);
+  }
+  int red = 0;
+  for (int y = 0; y < samples.Height(); ++y)
+    for (int x = 0; x < samples.Width(); ++x) red += samples.At(x, y, 0) > 0.9f && samples.At(x, y, 1) < 0.1f ? 1 : 0;
+  EXPECT_GT(red, 200 * 5);
+  EXPECT_LT(red, 200 * 14);
+}
+
+TEST_F(Program, EnvmapSaysWhatItCannotDo) {
+  WriteExr(Path("map.exr"), Image::Rgb(16, 8));
+  const auto error = [&](const std::string& arguments) {
+    const ProgramResult result = Run("envmap " + arguments);
+    EXPECT_EQ(result.exitCode, 1);
+    return result.err;
+  };
+  EXPECT_TRUE(BeginsWith(error("map.exr --mapping equalarea"),
+                         "map.exr: error: environment map of 16 x 8 pixels: expected a square image"));
+  EXPECT_TRUE(BeginsWith(error("map.exr --pdf-image a.png"), "map.exr: error: the map is black"));
+  EXPECT_TRUE(BeginsWith(error("map.exr --pdf-image no/a.png"), "no/a.png: error: the folder 'no' does not exist"));
+  EXPECT_TRUE(BeginsWith(error("none.exr"), "none.exr: error: "));
+  EXPECT_EQ(Run("envmap map.exr").exitCode, 0);
 }
 
 }  // namespace

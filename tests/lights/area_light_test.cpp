@@ -1,5 +1,6 @@
 #include "lights/area_light.h"
 
+#include <chrono>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "src/geometry/sphere.h"
 #include "src/geometry/triangle_mesh.h"
 #include "tests/lights/light_cases.h"
+#include "tests/support/chi_square.h"
 
 namespace dapple {
 namespace {
@@ -131,6 +133,75 @@ TEST(AreaLight, WhatLeavesTheLightHasItsAlpha) {
       EXPECT_EQ(light->L(*hit, -sample->wi), Color(4));
     }
   }
+}
+
+constexpr int kGridWidth = 400, kGridHeight = 250;  // 100,000 triangles
+
+/// A right triangle in the corner of each cell of a grid, of random size.
+TriangleMesh ScatteredTriangles(std::vector<double>* areas) {
+  RandomNumbers random(6);
+  std::vector<Vec3> p;
+  std::vector<int> indices;
+  for (int i = 0; i < kGridWidth * kGridHeight; ++i) {
+    const Vec3 corner(static_cast<float>(i % kGridWidth), static_cast<float>(i / kGridWidth), 0);
+    const float a = static_cast<float>(0.9 * random.Get1D()), b = static_cast<float>(0.9 * random.Get1D());
+    for (const Vec3& offset : {Vec3(0.05f, 0.05f, 0), Vec3(0.05f + a, 0.05f, 0), Vec3(0.05f, 0.05f + b, 0)}) {
+      indices.push_back(static_cast<int>(p.size()));
+      p.push_back(corner + offset);
+    }
+    areas->push_back(static_cast<double>(a) * static_cast<double>(b) / 2);
+  }
+  return TriangleMesh(std::move(p), {}, {}, std::move(indices));
+}
+
+// Counts in all triangles against their areas; those that expect fewer than five rays are pooled.
+TEST(AreaLight, TrianglesOfABigMeshAreChosenByArea) {
+  std::vector<double> areas;
+  const TriangleMesh mesh = ScatteredTriangles(&areas);
+  const AreaLight light(&mesh, Color(2), false);
+  double total = 0;
+  for (const double area : areas) total += area;
+  EXPECT_NEAR(light.Area() / total, 1, 1e-5);
+  constexpr int kRays = 1'000'000;
+  std::vector<double> observed(areas.size()), expected;
+  RandomNumbers random(7);
+  for (int i = 0; i < kRays; ++i) {
+    const std::optional<LeSample> sample = light.Sample_Le(random.Le());
+    ASSERT_TRUE(sample);
+    const Vec3& o = sample->ray.o;
+    observed[static_cast<size_t>(static_cast<int>(o.y) * kGridWidth + static_cast<int>(o.x))] += 1;
+  }
+  for (const double area : areas) expected.push_back(kRays * area / total);
+  const testing::ChiSquare fit = testing::CompareCounts(expected, observed);
+  EXPECT_GT(fit.pValue, 0.01) << fit.message;
+}
+
+/// Seconds for a ray, the best of several tries.
+double SecondsPerRay(const AreaLight& light) {
+  constexpr int kRays = 20'000;
+  double best = 1;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    RandomNumbers random(8);
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < kRays; ++i) {
+      if (!light.Sample_Le(random.Le())) ADD_FAILURE();
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    best = std::min(best, seconds / kRays);
+  }
+  return best;
+}
+
+// A search through all triangles would cost ten thousand times as much as for ten; caches make it a few times.
+TEST(AreaLight, ARayOfABigMeshCostsLittleMoreThanOfASmallOne) {
+  std::vector<double> areas;
+  const TriangleMesh big = ScatteredTriangles(&areas);
+  const TriangleMesh small({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {}, {}, {0, 1, 2, 2, 1, 3});
+  const double ofBig = SecondsPerRay(AreaLight(&big, Color(2), false));
+  const double ofSmall = SecondsPerRay(AreaLight(&small, Color(2), false));
+  RecordProperty("nanosecondsBig", static_cast<int>(ofBig * 1e9));
+  RecordProperty("nanosecondsSmall", static_cast<int>(ofSmall * 1e9));
+  EXPECT_LT(ofBig / ofSmall, 50);
 }
 
 TEST(AreaLight, DegenerateShapesEmitNothing) {

@@ -69,6 +69,7 @@ TEST(ProjectionMap, ShowsEachPixelAtItsPlace) {
   EXPECT_TRUE(map.Radiance({1, 0, 0}).IsBlack());
 }
 
+// In the square of the image, where dw = dx dy / (1 + x^2 + y^2)^(3/2) on the plane.
 TEST(ProjectionMap, DirectionsFollowTheirDensity) {
   struct Case {
     int width, height;
@@ -77,14 +78,20 @@ TEST(ProjectionMap, DirectionsFollowTheirDensity) {
   const Case cases[] = {{5, 4, 100}, {1, 1, 160}, {2, 3, 30}};
   for (const Case& c : cases) {
     const ProjectionMap map(RandomEnvironment(c.width, c.height, 3), c.fov, Color(1));
-    const auto sample = [&](double, const Vec2d& u) { return std::optional(ToFloat(map.Sample(u))); };
-    const auto pdf = [&](const Vec3& w) { return map.Evaluate(ToDouble(w)).pdf; };
-    // The pole of the test's grid lies aside, for cells there are slivers.
-    const testing::ChiSquare fit = testing::ChiSquareOnSphere(
-        sample, pdf,
-        {.samples = 20000, .rows = 20, .columns = 40, .seed = 9, .frame = Frame::FromZ(Normalize(Vec3(1, 2, 0)))});
+    const double shorter = std::tan(Radians(c.fov) / 2), aspect = static_cast<double>(c.width) / c.height;
+    const Vec2d extent = Vec2d(std::max(1.0, aspect), std::max(1.0, 1 / aspect)) * shorter;
+    const auto sample = [&](testing::UniformNumbers& random) -> std::optional<testing::Coordinates<2>> {
+      const double u = random.Get1D(), v = random.Get1D();
+      const Vec3d w = map.Sample({u, v});
+      return testing::Coordinates<2>{(w.x / w.z / extent.x + 1) / 2, (w.y / w.z / extent.y + 1) / 2};
+    };
+    const auto density = [&](const testing::Coordinates<2>& p) {
+      const double x = extent.x * (2 * p[0] - 1), y = extent.y * (2 * p[1] - 1);
+      return map.Evaluate({x, y, 1}).pdf * std::pow(1 + x * x + y * y, -1.5) * 4 * extent.x * extent.y;
+    };
+    const testing::ChiSquare fit = testing::ChiSquareOnCube<2>(sample, density, {20, 30}, 50000, 9);
     EXPECT_GT(fit.pValue, testing::SidakLevel(0.01, std::size(cases))) << c.fov << ": " << fit.message;
-    EXPECT_NEAR(fit.total, 1, 2e-4) << c.fov;
+    EXPECT_NEAR(testing::Integrate<2>(density, {{0, 0}, {1, 1}}, 1e-6, 24), 1, 1e-5) << c.fov;
   }
 }
 

@@ -98,15 +98,16 @@ TEST(SpotLight, PowerIsTheClosedForm) {
 }
 
 TEST(SpotLight, EveryRayCarriesTheSameFlux) {
-  for (const Cone& cone : kCones) {
-    const SpotLight light(Vec3(1, 2, 3), Vec3(0.3f, -0.5f, 0.2f), Color(5), cone.total, cone.start,
-                          SpotFalloff::PbrtV4);
-    for (int i = 0; i < 1000; ++i) {
-      LeRandom u;
-      u.direction = Vec2d(std::fmod(i * 0.7548776662466927, 1), std::fmod(i * 0.5698402909980532, 1));
-      const std::optional<LeSample> sample = light.Sample_Le(u);
-      ASSERT_TRUE(sample) << cone.total;
-      ASSERT_NEAR(sample->Flux().r / light.Power().r, 1, 1e-5) << cone.total;
+  for (const SpotFalloff falloff : {SpotFalloff::PbrtV3, SpotFalloff::PbrtV4}) {
+    for (const Cone& cone : kCones) {
+      const SpotLight light(Vec3(1, 2, 3), Vec3(0.3f, -0.5f, 0.2f), Color(5), cone.total, cone.start, falloff);
+      for (int i = 0; i < 1000; ++i) {
+        LeRandom u;
+        u.direction = Vec2d(std::fmod(i * 0.7548776662466927, 1), std::fmod(i * 0.5698402909980532, 1));
+        const std::optional<LeSample> sample = light.Sample_Le(u);
+        ASSERT_TRUE(sample) << cone.total;
+        ASSERT_NEAR(sample->Flux().r / light.Power().r, 1, 1e-5) << cone.total;
+      }
     }
   }
 }
