@@ -38,16 +38,16 @@ Color RampColor(double density) {
   return Lerp(static_cast<float>(place - static_cast<double>(i)), kRamp[i], kRamp[i + 1]);
 }
 
-/// The mean of f(direction) over a pixel of the picture, by a grid of points in it.
+/// The mean of f(direction) over a pixel of the picture, by a grid of points in it as fine as the map's pixels.
 template <typename F>
-auto MeanOverPixel(EnvironmentMapping mapping, const Vec2i& size, int x, int y, F f) {
-  constexpr int kSide = 3;
+auto MeanOverPixel(const EnvironmentMap& map, const Vec2i& size, int x, int y, F f) {
+  const int side = (map.Cells().x + size.x - 1) / size.x;
   decltype(f(Vec3d(0))) sum{};
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const Vec2d p((x + (i % kSide + 0.5) / kSide) / size.x, (y + (i / kSide + 0.5) / kSide) / size.y);
-    sum += f(EnvironmentDirectionAt(mapping, p));
+  for (int i = 0; i < side * side; ++i) {
+    const Vec2d p((x + (i % side + 0.5) / side) / size.x, (y + (i / side + 0.5) / side) / size.y);
+    sum += f(EnvironmentDirectionAt(map.Mapping(), p));
   }
-  return sum / (kSide * kSide);
+  return sum / static_cast<float>(side * side);
 }
 
 /// The densities of the rows, per unit of the square's height.
@@ -110,7 +110,7 @@ Image DensityPicture(const EnvironmentMap& map) {
     const double solidAngle = EnvironmentPixelSolidAngle(mapping, size.x, size.y, y);
     double sum = 0;
     for (int x = 0; x < size.x; ++x) {
-      const double pdf = MeanOverPixel(mapping, size, x, y, [&](const Vec3d& w) { return map.Evaluate(w).pdf; });
+      const double pdf = MeanOverPixel(map, size, x, y, [&](const Vec3d& w) { return map.Evaluate(w).pdf; });
       picture.SetColor(x, y, RampColor(4 * kPiD * pdf));
       sum += pdf * solidAngle;
     }
@@ -128,7 +128,7 @@ Image SamplesPicture(const EnvironmentMap& map, int count, int seed) {
   ParallelFor(size.y, [&](int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < size.x; ++x) {
-      picture.SetColor(x, y, MeanOverPixel(mapping, size, x, y, [&](const Vec3d& w) { return map.Radiance(w); }));
+      picture.SetColor(x, y, MeanOverPixel(map, size, x, y, [&](const Vec3d& w) { return map.Radiance(w); }));
     }
   });
   CompressBrightness(&picture);

@@ -403,5 +403,15 @@ TEST_F(Program, EnvmapSaysWhatItCannotDo) {
   EXPECT_EQ(Run("envmap map.exr").exitCode, 0);
 }
 
+// The scenes behind the pictures of the documentation.
+TEST_F(Program, ScenesOfTheDocumentationAreReadWithoutAWord) {
+  for (const std::string light : {"point", "spot", "distant", "projection", "goniometric", "area"}) {
+    const ProgramResult result = Run("info " DAPPLE_SOURCE_DIR "/docs/scenes/light-" + light + ".pbrt");
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.err, "");
+    EXPECT_TRUE(Contains(result.out, "light 0: " + light + ", power "));
+  }
+}
+
 }  // namespace
 }  // namespace dapple
