@@ -3,7 +3,7 @@
 // pbrt: `LightSource "distant"`. Rays are emitted from a disk across the scene.
 #pragma once
 
-#include "lights/light.h"
+#include "lights/emission_disk.h"
 
 namespace dapple {
 
@@ -15,7 +15,8 @@ class DistantLight final : public Light {
 
   std::string_view Name() const override { return "distant"; }
   bool IsDelta() const override { return true; }
-  void Prepare(const SceneExtent& extent) override { extent_ = extent; }
+  bool ComesFromOutside() const override { return true; }
+  void Prepare(const SceneExtent& extent) override;
   /// Irradiance times the area of the disk.
   Color Power() const override;
   double ImportanceAt(const LightContext& at) const override;
@@ -32,6 +33,7 @@ class DistantLight final : public Light {
   Vec3 direction_;
   Color irradiance_;
   SceneExtent extent_;
+  EmissionDisk disk_;
 };
 
 }  // namespace dapple

@@ -1,6 +1,5 @@
 #include "lights/environment_light.h"
 
-#include "lights/emission_disk.h"
 #include "lights/light_math.h"
 #include "src/base/frame.h"
 #include "src/sampling/warps.h"
@@ -13,7 +12,11 @@ EnvironmentLight::EnvironmentLight(const Image& image, const Transform& lightToR
   if (!map_.IsBlack()) strategy_ = MakeStrategy(options.sampling, {this, map_, frame_});
 }
 
-Color EnvironmentLight::Power() const { return FiniteColor(map_.Integral(), EmissionDisk(extent_, {0, 0, 1}).area); }
+void EnvironmentLight::Prepare(const SceneExtent& extent) {
+  extent_ = {extent.center, extent.radius};
+  disks_ = EmissionDisks(extent);
+  power_ = map_.IntegralTimes([this](const Vec3d& w) { return disks_.Area(ToDouble(ToRender(w))); });
+}
 
 double EnvironmentLight::ImportanceAt(const LightContext&) const {
   // pi times the mean radiance.
@@ -55,17 +58,17 @@ std::optional<LeSample> EnvironmentLight::Sample_Le(const LeRandom& u) const {
   const EnvironmentValue value = map_.Evaluate(ToMap(wi));
   const double pdf = EmissionPdf(value);
   if (pdf == 0 || value.L.IsBlack()) return std::nullopt;
-  const EmissionDisk disk(extent_, wi);
+  const EmissionDisk disk = disks_.Toward(wi);
   LeSample sample;
   sample.ray = Ray{disk.Sample(u.position), -wi};
   sample.Le = value.L;
-  sample.pdfPos = 1 / disk.area;
+  sample.pdfPos = 1 / disk.Area();
   sample.pdfDir = pdf;
   return sample;
 }
 
 LePdf EnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
-  return {EmissionDisk(extent_, -ray.d).Pdf(ray.o), EmissionPdf(map_.Evaluate(ToMap(-ray.d)))};
+  return {disks_.Toward(-ray.d).Pdf(ray.o), EmissionPdf(map_.Evaluate(ToMap(-ray.d)))};
 }
 
 LeRandom EnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
@@ -74,14 +77,16 @@ LeRandom EnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
     const Vec3d w = ToMap(-ray.d);
     u.direction = options_.emission == EnvironmentEmission::Uniform ? InvertSphere(w) : map_.Invert(w);
   }
-  u.position = EmissionDisk(extent_, -ray.d).Invert(ray.o);
+  u.position = disks_.Toward(-ray.d).Invert(ray.o);
   return u;
 }
 
 Color EnvironmentLight::Le(const Ray& ray) const { return map_.Radiance(ToMap(ray.d)); }
 
-Color UniformEnvironmentLight::Power() const {
-  return FiniteColor(L_, 4 * kPiD * EmissionDisk(extent_, {0, 0, 1}).area);
+void UniformEnvironmentLight::Prepare(const SceneExtent& extent) {
+  extent_ = {extent.center, extent.radius};
+  disks_ = EmissionDisks(extent);
+  power_ = FiniteColor(L_, disks_.AreaIntegral());
 }
 
 double UniformEnvironmentLight::ImportanceAt(const LightContext&) const {
@@ -117,22 +122,22 @@ LiRandom UniformEnvironmentLight::Invert_Li(const LightContext& at, const Vec3& 
 std::optional<LeSample> UniformEnvironmentLight::Sample_Le(const LeRandom& u) const {
   if (L_.IsBlack()) return std::nullopt;
   const Vec3 wi = ToFloat(SampleSphere(u.direction));
-  const EmissionDisk disk(extent_, wi);
+  const EmissionDisk disk = disks_.Toward(wi);
   LeSample sample;
   sample.ray = Ray{disk.Sample(u.position), -wi};
   sample.Le = L_;
-  sample.pdfPos = 1 / disk.area;
+  sample.pdfPos = 1 / disk.Area();
   sample.pdfDir = kSpherePdf;
   return sample;
 }
 
 LePdf UniformEnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
-  return {EmissionDisk(extent_, -ray.d).Pdf(ray.o), kSpherePdf};
+  return {disks_.Toward(-ray.d).Pdf(ray.o), kSpherePdf};
 }
 
 LeRandom UniformEnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
   LeRandom u;
-  u.position = EmissionDisk(extent_, -ray.d).Invert(ray.o);
+  u.position = disks_.Toward(-ray.d).Invert(ray.o);
   u.direction = InvertSphere(ToDouble(-ray.d));
   return u;
 }

@@ -1,10 +1,12 @@
 // Light from all around: an image of the environment, or one radiance from everywhere.
 //
 // pbrt: `LightSource "infinite"`. One table gives the directions both of `Sample_Li` (unless another strategy is
-// chosen, environment_strategy.h) and of `Sample_Le`; emitted rays start on a disk across the scene (emission_disk.h),
-// so that the power is the integral of L(w) A(w). For comparison, emission may draw its directions evenly instead.
+// chosen, environment_strategy.h) and of `Sample_Le`; emitted rays start on a disk across the scene (emission_disk.h)
+// of area A(w), so that the power is the integral of L(w) A(w). For comparison, emission may draw its directions evenly
+// instead.
 #pragma once
 
+#include "lights/emission_disk.h"
 #include "lights/environment_map.h"
 #include "lights/environment_strategy.h"
 #include "lights/light.h"
@@ -36,8 +38,9 @@ class EnvironmentLight final : public Light {
 
   std::string_view Name() const override { return "infinite"; }
   bool IsInfinite() const override { return true; }
-  void Prepare(const SceneExtent& extent) override { extent_ = extent; }
-  Color Power() const override;
+  void Prepare(const SceneExtent& extent) override;
+  /// The integral of radiance times the area of the disk, over all directions; relative error below 5e-5.
+  Color Power() const override { return power_; }
   double ImportanceAt(const LightContext& at) const override;
 
   std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override;
@@ -70,6 +73,8 @@ class EnvironmentLight final : public Light {
   LightFrame frame_;
   std::unique_ptr<EnvironmentStrategy> strategy_;  // of `Sample_Li`; null: the map's own density
   SceneExtent extent_;
+  EmissionDisks disks_;
+  Color power_;
 };
 
 /// The same radiance from everywhere. Toward a surface that light does not cross, directions are drawn by the cosine.
@@ -80,9 +85,9 @@ class UniformEnvironmentLight final : public Light {
 
   std::string_view Name() const override { return "infinite"; }
   bool IsInfinite() const override { return true; }
-  void Prepare(const SceneExtent& extent) override { extent_ = extent; }
-  /// 4 pi L times the area of the disk.
-  Color Power() const override;
+  void Prepare(const SceneExtent& extent) override;
+  /// L times the integral of the area of the disk over all directions.
+  Color Power() const override { return power_; }
   double ImportanceAt(const LightContext& at) const override;
 
   std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override;
@@ -98,6 +103,8 @@ class UniformEnvironmentLight final : public Light {
  private:
   Color L_;
   SceneExtent extent_;
+  EmissionDisks disks_;
+  Color power_;
 };
 
 }  // namespace dapple

@@ -15,6 +15,8 @@ namespace dapple {
 namespace {
 
 constexpr int64_t kRowsPerChunk = 16;
+/// Into so many parts a side of the square is cut at least to integrate radiance times a factor.
+constexpr double kFactorSteps = 1024;
 
 bool IsRadiance(const Color& c) { return c.IsFinite() && c.r >= 0 && c.g >= 0 && c.b >= 0; }
 
@@ -170,13 +172,77 @@ Color EnvironmentMap::IntegrateRadiance() const {
   return FiniteColor(integral);
 }
 
-Vec2d EnvironmentMap::RowIntegrals(int y) const {
-  const double low = LatticeY(y), high = LatticeY(y + 1);
+Vec2d EnvironmentMap::StripIntegrals(double low, double high) const {
   if (mapping_ == EnvironmentMapping::EqualArea) return Vec2d(2 * kPiD * (high - low));
   // With m the middle and d half the height in theta: the integrals of (1/2 -+ (theta - m) / (2 d)) sin theta.
   const double m = kPiD * (low + high) / 2, d = kPiD * (high - low) / 2;
   const double even = std::sin(m) * std::sin(d), odd = std::cos(m) * (std::sin(d) - d * std::cos(d)) / d;
   return Vec2d(even - odd, even + odd) * (2 * kPiD);
+}
+
+Color EnvironmentMap::IntegralTimes(const std::function<double(const Vec3d& w)>& factor) const {
+  std::vector<Vec3d> rows(static_cast<size_t>(height_) + 1, Vec3d(0));
+  ParallelFor(height_ + 1, [&](int64_t row) {
+    const int y = static_cast<int>(row);
+    const double low = LatticeY(y), high = LatticeY(y + 1);
+    const int strips = static_cast<int>(std::ceil((high - low) * kFactorSteps));
+    for (int i = 0; i < strips; ++i)
+      rows[static_cast<size_t>(y)] += StripTimes(y, Lerp(static_cast<double>(i) / strips, low, high),
+                                                 Lerp(static_cast<double>(i + 1) / strips, low, high), factor);
+  });
+  Vec3d sum(0);
+  for (const Vec3d& row : rows) sum += row;
+  return FiniteColor(sum);
+}
+
+// Piece by piece of the strip, each as long as the factor may be taken for a linear function: its value at the mean
+// place of the radiance counts.
+Vec3d EnvironmentMap::StripTimes(int y, double low, double high,
+                                 const std::function<double(const Vec3d& w)>& factor) const {
+  const Vec2d integrals = StripIntegrals(low, high);
+  const double y0 = LatticeY(y), y1 = LatticeY(y + 1);
+  const float tLow = static_cast<float>((low - y0) / (y1 - y0)), tHigh = static_cast<float>((high - y0) / (y1 - y0));
+  Vec3d sum(0), radiance(0);
+  Vec3d place(0);  // x, y times weight, weight
+  double length = 0;
+  const auto finish = [&] {
+    if (place.z > 0) sum += radiance * factor(DirectionAt({place.x / place.z, place.y / place.z}));
+    radiance = place = Vec3d(0);
+    length = 0;
+  };
+  for (int x = 0; x <= width_; ++x) {
+    const double x0 = LatticeX(x), x1 = LatticeX(x + 1);
+    const int pieces = static_cast<int>(std::ceil((x1 - x0) * kFactorSteps));
+    for (int i = 0; i < pieces; ++i) {
+      const double s0 = static_cast<double>(i) / pieces, s1 = static_cast<double>(i + 1) / pieces;
+      const auto corner = [&](double s, float t) {
+        return Lerp(t, Lerp(static_cast<float>(s), Corner(x, y), Corner(x + 1, y)),
+                    Lerp(static_cast<float>(s), Corner(x, y + 1), Corner(x + 1, y + 1)));
+      };
+      const Color c[4] = {corner(s0, tLow), corner(s1, tLow), corner(s0, tHigh), corner(s1, tHigh)};
+      const double halfWidth = (x1 - x0) * (s1 - s0) / 2;
+      const double top = halfWidth * integrals.x, bottom = halfWidth * integrals.y;
+      double w[4];
+      for (int k = 0; k < 4; ++k) w[k] = (k < 2 ? top : bottom) * Importance(c[k]);
+      const double weight = w[0] + w[1] + w[2] + w[3];
+      if (weight == 0) continue;
+      for (int k = 0; k < Color::kComponents; ++k)
+        radiance[k] += top * static_cast<double>(c[0][k] + c[1][k]) + bottom * static_cast<double>(c[2][k] + c[3][k]);
+      // Where a linear function weighs its interval, its mean place is a third or two of the way.
+      const double xMean = Lerp((1 + (w[1] + w[3]) / weight) / 3, Lerp(s0, x0, x1), Lerp(s1, x0, x1));
+      const double yMean = Lerp((1 + (w[2] + w[3]) / weight) / 3, low, high);
+      place += Vec3d(xMean, yMean, 1) * weight;
+      length += 2 * halfWidth;
+      if (length * kFactorSteps > 0.5) finish();
+    }
+  }
+  finish();
+  return sum;
+}
+
+Vec3d EnvironmentMap::DirectionAt(const Vec2d& p) const {
+  return mapping_ == EnvironmentMapping::LatLong ? SampleSphere({Sqr(std::sin(kPiD / 2 * p.y)), p.x})
+                                                 : EqualAreaSquareToSphere(p);
 }
 
 double EnvironmentMap::CellSolidAngle(const Vec2i& cell) const {

@@ -100,10 +100,14 @@ struct LiRandom {
   Vec2d direction{0, 0};
 };
 
+class Outline;
+
 /// What the scene tells its lights before the first sample: a sphere around all that can be hit.
 struct SceneExtent {
   Vec3 center{0, 0, 0};
   float radius = 1;
+  /// What is seen of it from any side, while lights are prepared and where one of them `ComesFromOutside`; else null.
+  const Outline* outline = nullptr;
 };
 
 /// Immutable after `Prepare` and shared by all threads.
@@ -117,6 +121,8 @@ class Light {
   virtual bool IsDelta() const { return false; }
   /// Rays that leave the scene find it; `Le` answers.
   virtual bool IsInfinite() const { return false; }
+  /// Its rays set out from disks across the scene: an environment, a distant light.
+  virtual bool ComesFromOutside() const { return IsInfinite(); }
 
   /// Called once, before all else.
   virtual void Prepare(const SceneExtent&) {}

@@ -126,6 +126,11 @@ Bounds3 BilinearMesh::PrimitiveBounds(int primitive) const {
   return bounds;
 }
 
+void BilinearMesh::AppendHull(std::vector<HullBall>* hull) const {
+  const auto position = [this](int vertex) { return positions_[static_cast<size_t>(vertex)]; };
+  AppendVertices(indices_, static_cast<int>(positions_.size()), position, hull);
+}
+
 PrimitiveHits BilinearMesh::IntersectAll(const Ray& ray, int primitive) const {
   const Patch patch = PatchOf(primitive);
   const auto& [p00, p10, p01, p11] = patch.corner;

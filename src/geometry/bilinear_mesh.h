@@ -23,6 +23,7 @@ class BilinearMesh final : public Shape {
 
   int PrimitiveCount() const override { return static_cast<int>(indices_.size() / 4); }
   Bounds3 PrimitiveBounds(int primitive) const override;
+  void AppendHull(std::vector<HullBall>* hull) const override;
   /// Reshetov 2019, "Cool patches"; in double.
   PrimitiveHits IntersectAll(const Ray& ray, int primitive) const override;
   SurfaceInteraction Interact(const Ray& ray, const PrimitiveHit& hit) const override;

@@ -27,6 +27,11 @@ Bounds3 Cylinder::PrimitiveBounds(int) const {
   return BoundsOf({-radius_, -radius_, zMin_}, {radius_, radius_, zMax_});
 }
 
+void Cylinder::AppendHull(std::vector<HullBall>* hull) const {
+  const Vec2d profile[] = {{radius_, zMin_}, {radius_, zMax_}};
+  AppendRevolved(profile, phiMax_, hull);
+}
+
 Quadric::LocalHits Cylinder::IntersectLocal(const LocalRay& ray) const {
   LocalHits hits;
   const double a = ray.d.x * ray.d.x + ray.d.y * ray.d.y;

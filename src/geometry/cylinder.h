@@ -13,6 +13,7 @@ class Cylinder final : public Quadric {
            double phiMaxDegrees);
 
   Bounds3 PrimitiveBounds(int primitive) const override;
+  void AppendHull(std::vector<HullBall>* hull) const override;
   Vec2 Uv(const PrimitiveHit& hit) const override;
   double PrimitiveArea(int primitive) const override { return primitive == 0 ? area_ : 0; }
 

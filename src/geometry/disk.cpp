@@ -27,6 +27,11 @@ Bounds3 Disk::PrimitiveBounds(int) const {
   return BoundsOf({-radius_, -radius_, height_}, {radius_, radius_, height_});
 }
 
+void Disk::AppendHull(std::vector<HullBall>* hull) const {
+  const Vec2d profile[] = {{radius_, height_}, {innerRadius_, height_}};
+  AppendRevolved(profile, phiMax_, hull);
+}
+
 Quadric::LocalHits Disk::IntersectLocal(const LocalRay& ray) const {
   LocalHits hits;
   const double t = (height_ - ray.o.z) / ray.d.z;

@@ -74,6 +74,12 @@ Bounds3 Quadric::BoundsOf(const Vec3d& low, const Vec3d& high) const {
   return bounds;
 }
 
+void Quadric::AppendRevolved(std::span<const Vec2d> profile, double phiMax, std::vector<HullBall>* hull) const {
+  for (const Vec2d& corner : TangentPolygon(0, phiMax))
+    for (const Vec2d& p : profile)
+      hull->push_back(EnclosingHullBall(objectToRender_.Point({p.x * corner.x, p.x * corner.y, p.y}), 0));
+}
+
 PrimitiveHits Quadric::IntersectAll(const Ray& ray, int primitive) const {
   const LocalHits local = IntersectLocal({ToObject(ray.o), renderToObject_.Vector(ToDouble(ray.d)), ray.tMax});
   PrimitiveHits hits;

@@ -4,6 +4,8 @@
 // class describes its surface there; this one makes interactions, samples and densities in render space of it.
 #pragma once
 
+#include <span>
+
 #include "src/geometry/affine.h"
 #include "src/geometry/shape.h"
 
@@ -73,6 +75,9 @@ class Quadric : public Shape {
   Bounds3 BoundsOf(const Vec3d& low, const Vec3d& high) const;
   /// The box around the transformed sphere of that radius around the origin.
   Bounds3 EllipsoidBounds(double radius) const;
+  /// Adds points whose convex hull holds what `profile`, points (r, z) joined by lines, sweeps over as it turns around
+  /// the z axis from 0 to `phiMax`. The points are at most 0.2 % farther from the axis than the surface.
+  void AppendRevolved(std::span<const Vec2d> profile, double phiMax, std::vector<HullBall>* hull) const;
 
  private:
   /// The unit normal in render space, on the outside, of an object-space normal.

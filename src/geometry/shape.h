@@ -7,6 +7,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "src/base/transform.h"
 #include "src/base/vec.h"
@@ -43,6 +44,12 @@ struct Ball {
   double radius = 0;
 };
 
+/// A ball of a convex hull; a point where the radius is 0.
+struct HullBall {
+  Vec3 center{0, 0, 0};
+  float radius = 0;
+};
+
 class Shape {
  public:
   virtual ~Shape() = default;
@@ -52,6 +59,8 @@ class Shape {
 
   virtual int PrimitiveCount() const = 0;
   virtual Bounds3 PrimitiveBounds(int primitive) const = 0;
+  /// Adds balls whose convex hull holds the shape: its vertices where it has them.
+  virtual void AppendHull(std::vector<HullBall>* hull) const = 0;
 
   /// All hits with 0 < t < ray.tMax, for shapes that Embree does not trace itself.
   virtual PrimitiveHits IntersectAll(const Ray& ray, int primitive) const = 0;

@@ -102,6 +102,18 @@ std::optional<Ball> Sphere::AsBall() const {
   return Ball{ToRender(Vec3d(0)), std::sqrt(area_ / (4 * kPiD))};
 }
 
+void Sphere::AppendHull(std::vector<HullBall>* hull) const {
+  if (isWhole_ && IsSimilarity()) {
+    hull->push_back(EnclosingHullBall(ToRender(Vec3d(0)), std::sqrt(area_ / (4 * kPiD))));
+    return;
+  }
+  // From the north end of the meridian to the south: (sin theta, cos theta) is (y, x) of the unit circle.
+  std::vector<Vec2d> profile;
+  for (const Vec2d& corner : TangentPolygon(SafeAcos(zMax_ / radius_), SafeAcos(zMin_ / radius_)))
+    profile.emplace_back(radius_ * std::max(0.0, corner.y), radius_ * corner.x);
+  AppendRevolved(profile, phiMax_, hull);
+}
+
 Bounds3 Sphere::PrimitiveBounds(int) const {
   // The box of the cut sphere, transformed, within the box of the whole transformed sphere, which is exact.
   Bounds3 bounds = BoundsOf({-radius_, -radius_, zMin_}, {radius_, radius_, zMax_});

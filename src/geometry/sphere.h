@@ -17,6 +17,7 @@ class Sphere final : public Quadric {
 
   std::optional<Ball> AsBall() const override;
   Bounds3 PrimitiveBounds(int primitive) const override;
+  void AppendHull(std::vector<HullBall>* hull) const override;
   Vec2 Uv(const PrimitiveHit& hit) const override;
   double PrimitiveArea(int primitive) const override { return primitive == 0 ? area_ : 0; }
   /// Of a whole sphere (or ellipsoid) from outside: uniform over the cone that touches it, in object space

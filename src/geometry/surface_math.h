@@ -2,8 +2,11 @@
 // vectors.
 #pragma once
 
+#include <vector>
+
 #include "src/base/numerics.h"
 #include "src/base/vec.h"
+#include "src/geometry/shape.h"
 
 namespace dapple {
 
@@ -39,6 +42,25 @@ inline float RoundUp(double x) {
   constexpr double kUp = 1 + 0x1p-23;
   return static_cast<float>(x * kUp);
 }
+
+/// A hull's ball that holds the ball around `center`, with its numbers rounded to float.
+HullBall EnclosingHullBall(const Vec3d& center, double radius);
+
+/// Adds the vertices that `indices` name, each once.
+template <typename Position>
+void AppendVertices(const std::vector<int>& indices, int vertexCount, const Position& position,
+                    std::vector<HullBall>* hull) {
+  std::vector<bool> isAdded(static_cast<size_t>(vertexCount));
+  for (const int index : indices) {
+    if (isAdded[static_cast<size_t>(index)]) continue;
+    isAdded[static_cast<size_t>(index)] = true;
+    hull->push_back({position(index), 0});
+  }
+}
+
+/// The corners of a line around the arc of the unit circle from `begin` to `end` (at most a full turn): its ends and
+/// where tangents meet, at most 0.2 % outside. The hull of the corners holds the arc.
+std::vector<Vec2d> TangentPolygon(double begin, double end);
 
 /// The derivative of Normalize(v) where v changes by `dv`.
 inline Vec3d NormalizedDerivative(const Vec3d& v, const Vec3d& dv) {

@@ -103,6 +103,11 @@ Bounds3 TriangleMesh::PrimitiveBounds(int primitive) const {
   return bounds;
 }
 
+void TriangleMesh::AppendHull(std::vector<HullBall>* hull) const {
+  AppendVertices(
+      indices_, vertexCount_, [this](int vertex) { return Position(vertex); }, hull);
+}
+
 PrimitiveHits TriangleMesh::IntersectAll(const Ray& ray, int primitive) const {
   const Corners corners = CornersOf(primitive);
   const Vec3d d = ToDouble(ray.d), a = corners.p0 - ToDouble(ray.o), b = a + corners.e1, c = a + corners.e2;

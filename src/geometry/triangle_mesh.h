@@ -33,6 +33,7 @@ class TriangleMesh final : public Shape {
 
   int PrimitiveCount() const override { return static_cast<int>(indices_.size() / 3); }
   Bounds3 PrimitiveBounds(int primitive) const override;
+  void AppendHull(std::vector<HullBall>* hull) const override;
   PrimitiveHits IntersectAll(const Ray& ray, int primitive) const override;
   SurfaceInteraction Interact(const Ray& ray, const PrimitiveHit& hit) const override;
   Vec2 Uv(const PrimitiveHit& hit) const override;

@@ -1,6 +1,9 @@
 #include "src/scene/scene.h"
 
+#include <algorithm>
 #include <cassert>
+
+#include "src/geometry/outline.h"
 
 namespace dapple {
 
@@ -64,16 +67,21 @@ Scene::Scene(SceneParts parts)
       settings_(std::move(parts.settings)),
       renderToWorld_(parts.renderToWorld) {
   facts_.instances = static_cast<int>(parts.instances.size());
-  BuildAccelerator(std::move(parts.groups), std::move(parts.instances));
+  const std::vector<GeometryEntry> entries = GeometryEntries();
+  accelerator_ = std::make_unique<Accelerator>(entries, parts.groups, parts.instances);
   extent_ = ExtentOf(accelerator_->Bounds());
-  PrepareLights();
+  const bool needsOutline =
+      std::any_of(lights_.begin(), lights_.end(), [](const auto& light) { return light->ComesFromOutside(); });
+  std::optional<Outline> outline;
+  if (needsOutline) outline.emplace(entries, parts.groups, parts.instances);
+  PrepareLights({extent_.center, extent_.radius, outline ? &*outline : nullptr});
   AddGeometry(primitives_, materials_, &facts_);
   AddLights(lights_, extent_.center, &facts_);
 }
 
 Scene::~Scene() = default;
 
-void Scene::BuildAccelerator(std::vector<GeometryGroup> groups, std::vector<GeometryInstance> instances) {
+std::vector<GeometryEntry> Scene::GeometryEntries() const {
   std::vector<GeometryEntry> entries;
   entries.reserve(primitives_.size());
   for (const ScenePrimitive& primitive : primitives_) {
@@ -82,14 +90,14 @@ void Scene::BuildAccelerator(std::vector<GeometryGroup> groups, std::vector<Geom
     // A glowing interface is seen, but light passes it.
     entries.push_back({primitive.shape.get(), primitive.alpha.get(), primitive.material >= 0});
   }
-  accelerator_ = std::make_unique<Accelerator>(std::move(entries), std::move(groups), std::move(instances));
+  return entries;
 }
 
-void Scene::PrepareLights() {
+void Scene::PrepareLights(const SceneExtent& extent) {
   std::vector<std::unique_ptr<Light>> emitting;
   std::vector<int> newIndex(lights_.size(), -1);
   for (size_t i = 0; i < lights_.size(); ++i) {
-    lights_[i]->Prepare(extent_);
+    lights_[i]->Prepare(extent);
     if (!(lights_[i]->Power().MaxComponent() > 0)) {
       ++facts_.blackLights;
       continue;

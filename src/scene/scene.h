@@ -78,8 +78,8 @@ class Scene {
   const Transform& RenderToWorld() const { return renderToWorld_; }
 
  private:
-  void PrepareLights();
-  void BuildAccelerator(std::vector<GeometryGroup> groups, std::vector<GeometryInstance> instances);
+  std::vector<GeometryEntry> GeometryEntries() const;
+  void PrepareLights(const SceneExtent& extent);
 
   std::vector<ScenePrimitive> primitives_;
   std::vector<std::unique_ptr<Material>> materials_;

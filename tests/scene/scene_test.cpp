@@ -81,6 +81,19 @@ TEST(Scene, ExtentHoldsAllThatCanBeHit) {
   EXPECT_LT(extent.radius, 10);
 }
 
+TEST(Scene, DistantLightsShineFromADiskAroundShapesAndInstances) {
+  Builder b;
+  const int matte = b.Matte(0.5f);
+  b.Ball({0, 0, 0}, 1, matte);
+  b.Ball({0, 0, 0}, 1, matte);
+  b.parts.groups = {{{1}}};
+  b.parts.instances = {{0, Transform::Translate({10, 0, 3})}};
+  b.parts.lights.push_back(std::make_unique<DistantLight>(Vec3(0, 0, -1), Color(2)));
+  const Scene scene = b.Make();
+  EXPECT_NEAR(scene.Lights()[0]->Power().g / (2 * kPi * 36), 1, 2e-5);
+  EXPECT_EQ(scene.Extent().outline, nullptr);
+}
+
 TEST(Scene, AnEmptySceneIsAScene) {
   Builder b;
   b.parts.lights.push_back(std::make_unique<UniformEnvironmentLight>(Color(1)));

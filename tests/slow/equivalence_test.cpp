@@ -112,6 +112,7 @@ class BrighterLight final : public Light {
   std::string_view Name() const override { return light_->Name(); }
   bool IsDelta() const override { return light_->IsDelta(); }
   bool IsInfinite() const override { return light_->IsInfinite(); }
+  bool ComesFromOutside() const override { return light_->ComesFromOutside(); }
   void Prepare(const SceneExtent& extent) override { light_->Prepare(extent); }
   Color Power() const override { return light_->Power(); }
   std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override {
