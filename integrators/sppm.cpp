@@ -26,7 +26,8 @@ bool IsGlossy(const Bsdf& bsdf) {
 void SppmIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
-  emission_.emplace(scene, LearnEmissionGuide(scene, options_.maxDepth, seed));
+  emission_.emplace(scene,
+                    options_.guideEmission ? LearnEmissionGuide(scene, options_.maxDepth, seed) : EmissionGuide());
 }
 
 PassStats SppmIntegrator::RenderPass(int pass, Film& film) const {

@@ -119,6 +119,10 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
       ->type_name("R")
       ->group(group);
   command
+      ->add_flag("--no-guide", options->noGuide,
+                 "sppm: emit photons as the lights do, without a pilot that learns which of them are of use")
+      ->group(group);
+  command
       ->add_option("--light-samples", options->lightSamples,
                    "Next-event samples at each vertex of a camera path; by default 1, or an infinite light's own "
                    "\"samples\"")
@@ -203,6 +207,7 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
   plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
   plan.options.radius = Either(options.radius, settings.radius);
+  plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);
   plan.seed = Either(options.seed, settings.seed).value_or(0);

@@ -36,6 +36,7 @@ struct SceneOptions {
   std::optional<int> maxDepth;
   std::optional<int> photons;
   std::optional<double> radius;
+  bool noGuide = false;
   std::optional<int> lightSamples;
   DirectTechnique direct = DirectTechnique::Mis;
   int threads = 0;  ///< 0: one a processor
