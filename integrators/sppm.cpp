@@ -7,6 +7,7 @@
 #include "src/photons/emission_pilot.h"
 #include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
+#include "src/photons/same_surface.h"
 
 namespace dapple {
 
@@ -147,16 +148,13 @@ Color SppmIntegrator::Gather(const Map& map, const SurfaceInteraction& hit, cons
                              const GatherLimits& limits, PassStats& stats) const {
   ++stats.gathers;
   const EpanechnikovKernel kernel(limits.radius);
-  // Photons on other surfaces nearby are none of this one's: those far off its plane, or of a very different normal.
-  const float maxPlaneDistance = 0.3f * limits.radius;
-  constexpr float kMinNormalCosine = 0.7f;
+  const GatherSite site(hit.p, hit.ng, hit.wo, limits.radius, bsdf.Flags().HasTransmission());
   Color sum;
   map.ForEachWithin(hit.p, limits.radius, [&](const Vec3& position, const Photon& photon, float distanceSquared) {
     ++stats.photonsGathered;
     if (photon.scattered > limits.maxScattered || (limits.causticsOnly && !photon.isCaustic)) return;
-    if (std::abs(Dot(position - hit.p, hit.ng)) > maxPlaneDistance) return;
-    if (AbsDot(photon.normal.Decode(), hit.ng) < kMinNormalCosine) return;
     const Vec3 wi = photon.wi.Decode();
+    if (!IsOnSameSurface(site, position, distanceSquared, photon.normal.Decode(), wi)) return;
     // Photons are dense by |ng.wi|, and Eval has the shading normal's cosine.
     const float cosine = AbsDot(hit.ng, wi);
     if (cosine > 0)

@@ -1,0 +1,90 @@
+// What density estimation on surfaces must not do: let light through walls, and depend on where a scene lies and how
+// large it is.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "src/image/metrics.h"
+#include "tests/support/grouped_render.h"
+#include "tests/support/scene_from_text.h"
+
+namespace dapple {
+namespace {
+
+using namespace testing_support;
+
+/// The six faces of the box [-h, h]^3, turned inward or outward at random.
+std::string Box(double h) {
+  return fmt::format(
+      "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  1 6 2 1 5 6  2 3 7 2 7 6 "
+      "3 0 4 3 4 7] \"point P\" [-{0} -{0} -{0} {0} -{0} -{0} {0} {0} -{0} -{0} {0} -{0} "
+      "-{0} -{0} {0} {0} -{0} {0} {0} {0} {0} -{0} {0} {0}] ",
+      h);
+}
+
+/// Mean radiance of what a camera sees of a closed white room with a lamp inside. `outside`: its outer shell, if any,
+/// as text.
+double SeenOfRoom(const std::string& outside, const std::string& lookAt) {
+  const auto scene =
+      SceneFromText("LookAt " + lookAt +
+                    " 0 0 1 Camera \"perspective\" \"float fov\" [20] "
+                    "Film \"image\" \"integer xresolution\" [16] \"integer yresolution\" [16] WorldBegin "
+                    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [20 20 20] Translate 0 0 0.5 "
+                    "Shape \"sphere\" \"float radius\" [0.1] AttributeEnd "
+                    "Material \"matte\" \"rgb Kd\" [.7 .7 .7] " +
+                    Box(1) + outside + "WorldEnd");
+  IntegratorOptions options;
+  options.photonsPerPass = 20000;
+  options.radius = 0.1;
+  options.maxDepth = 3;
+  const GroupedImages images = RenderGroups(*scene, "sppm", options, 2, 1);
+  const Image mean = BlockMeans(images.Mean(), 16);
+  return mean.ColorAt(0, 0).Average();
+}
+
+TEST(PhotonGather, NothingLeaksThroughWallsATenthOfTheRadiusThick) {
+  constexpr double kThickness = 0.01;
+  const std::string outer = Box(1 + kThickness);
+  const double lit = SeenOfRoom("", "0 -0.9 0  0 1 0");
+  EXPECT_GT(lit, 0.1);
+  // What lets light through is asked too: behind the white wall there is none, but photons of its other face are near.
+  for (const std::string& outside : {std::string(), "Material \"matte\" " + outer, "Material \"translucent\" " + outer})
+    for (const char* lookAt : {"0 -4 0  0 0 0", "-2.4 -2.4 1.2  -1 -1 0.95"})
+      EXPECT_LT(SeenOfRoom(outside, lookAt), 1e-4 * lit) << outside << " seen from " << lookAt;
+}
+
+/// A glass ball on a white floor beside a wall, under a lamp; everything times `scale`, then moved by `offset`.
+Image CausticAt(double scale, double offset) {
+  const auto at = [&](double x) { return x * scale + offset; };
+  const auto scene =
+      SceneFromText(fmt::format("LookAt {} {} {}  {} {} {}  0 0 1 ", at(0), at(-5), at(3), at(0), at(0), at(0.5)) +
+                    fmt::format("Camera \"perspective\" \"float fov\" [40] "
+                                "Film \"image\" \"integer xresolution\" [48] \"integer yresolution\" [48] WorldBegin "
+                                "Translate {0} {0} {0} Scale {1} {1} {1} ",
+                                offset, scale) +
+                    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [60 60 60] Translate 1 -1 4 "
+                    "Shape \"sphere\" \"float radius\" [0.3] AttributeEnd "
+                    "Material \"matte\" \"rgb Kd\" [.8 .7 .6] "
+                    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3  4 5 6 4 6 7] "
+                    "\"point P\" [-3 -3 0 3 -3 0 3 3 0 -3 3 0  -3 2 0 3 2 0 3 2 3 -3 2 3] "
+                    "Material \"glass\" Translate -0.3 0.2 1 Shape \"sphere\" \"float radius\" [0.9] WorldEnd");
+  IntegratorOptions options;
+  options.photonsPerPass = 20000;
+  return RenderGroups(*scene, "sppm", options, 2, 1).Mean();
+}
+
+// The same random numbers make the same paths, but for the few that rounding turns another way.
+TEST(PhotonGather, ScenesFarAwayTinyAndHugeGiveTheSamePicture) {
+  const Image expected = CausticAt(1, 0);
+  const struct { double scale, offset; } kCases[] = {{1, 1e7}, {1e-6, 0}, {1e6, 0}, {1e6, 1e7}};
+  for (const auto& c : kCases) {
+    const Image image = CausticAt(c.scale, c.offset);
+    const ImageDifference difference = CompareImages(image, expected);
+    EXPECT_NEAR(difference.meanRatio, 1, 1e-4) << "scale " << c.scale << ", offset " << c.offset;
+    EXPECT_LT(difference.relativeMse, 1e-6) << "scale " << c.scale << ", offset " << c.offset;
+  }
+}
+
+}  // namespace
+}  // namespace dapple
