@@ -57,13 +57,14 @@ class CosineStrategy final : public EnvironmentStrategy {
 };
 
 /// Radiance less its mean (Karlik et al. 2019, "MIS compensation: optimizing sampling techniques in multiple importance
-/// sampling", for half of the samples each): where the map is dimmer than its mean the density is zero, and
-/// BSDF sampling alone finds its light. Without BSDF sampling beside it that light would be lost, so then the map's own
-/// density is used; so it is where nothing exceeds the mean.
+/// sampling", for as many samples of the light as of the BSDF): where the map is dimmer the density is zero, and BSDF
+/// sampling alone finds its light. Where the light draws N directions for one of the BSDF, less is left to that: here
+/// 2 / (N + 1) of the mean. Without BSDF sampling beside it the light below would be lost, so then the map's own
+/// density is used; so it is where nothing exceeds the threshold.
 class CompensatedStrategy final : public EnvironmentStrategy {
  public:
   explicit CompensatedStrategy(const EnvironmentSpace& space)
-      : space_(space), compensated_(space.map.MakeDensity(space.map.MeanImportance())) {}
+      : space_(space), compensated_(space.map.MakeDensity(Threshold(space))) {}
 
   Vec3 Sample(const LightContext& at, const LiRandom& u) const override {
     return space_.frame.ToRender(space_.map.Sample(DensityAt(at), u.direction));
@@ -78,6 +79,11 @@ class CompensatedStrategy final : public EnvironmentStrategy {
   }
 
  private:
+  static double Threshold(const EnvironmentSpace& space) {
+    const double bsdfShare = 1. / (space.light->SampleCount() + 1);
+    return 2 * bsdfShare * space.map.MeanImportance();
+  }
+
   const EnvironmentDensity& DensityAt(const LightContext& at) const {
     return at.bsdfDrawsToo && !compensated_.table.IsZero() ? compensated_ : space_.map.Density();
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "src/base/numerics.h"
 
@@ -178,16 +179,22 @@ StructuredStrategy::StructuredStrategy(const EnvironmentSpace& space) : space_(s
   strata_ = static_cast<int>(probabilities.size());
 
   std::vector<double> lights(probabilities.size());
+  std::vector<Vec2i> corners(probabilities.size(), Vec2i(std::numeric_limits<int>::max()));
   std::vector<const Block*> order;
   for (const Block& block : blocks.list) {
     if (block.stratum < 0) continue;
     lights[static_cast<size_t>(block.stratum)] += block.light;
+    Vec2i& corner = corners[static_cast<size_t>(block.stratum)];
+    corner = {std::min(corner.x, block.at.x), std::min(corner.y, block.at.y)};
     order.push_back(&block);
   }
-  // Stratum by stratum, and near blocks next to each other: stratified numbers then give stratified directions.
-  std::sort(order.begin(), order.end(), [](const Block* a, const Block* b) {
-    return a->stratum != b->stratum ? a->stratum < b->stratum : MortonCode(a->at) < MortonCode(b->at);
-  });
+  // Part by part, in these stratum by stratum, and what is near next to each other: stratified numbers then give
+  // stratified directions.
+  const auto key = [&corners](const Block* block) {
+    return std::tuple(block->part, MortonCode(corners[static_cast<size_t>(block->stratum)]), block->stratum,
+                      MortonCode(block->at));
+  };
+  std::sort(order.begin(), order.end(), [&key](const Block* a, const Block* b) { return key(a) < key(b); });
   ranks_.assign(blocks.list.size(), -1);
   std::vector<double> shares;
   for (const Block* block : order) {
