@@ -27,59 +27,22 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
 
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last,
                    const DirectLighting& direct) {
-  const auto weighted = [&](int index, const Color& radiance) {
-    if (radiance.IsBlack() || last.isSpecular || direct.technique == DirectTechnique::Bsdf) return radiance;
-    if (direct.technique == DirectTechnique::Light) return Color();
+  return EmittedAlong(scene, ray, hit, [&](int index) -> double {
+    if (last.isSpecular || direct.technique == DirectTechnique::Bsdf) return 1;
+    if (direct.technique == DirectTechnique::Light) return 0;
     const Light& light = *scene.Lights()[static_cast<size_t>(index)];
     const double lightPdf = scene.Picker().ProbabilityFor(last.at, index) * light.Pdf_Li(last.at, ray.d, hit);
-    return radiance * static_cast<float>(PowerHeuristic(last.pdf, direct.SamplesOf(light) * lightPdf));
-  };
-  Color sum;
-  if (hit) {
-    const int light = scene.AreaLightAt(*hit);
-    if (light >= 0) sum = weighted(light, scene.Lights()[static_cast<size_t>(light)]->L(*hit, hit->wo));
-  } else {
-    for (int light : scene.InfiniteLights())
-      sum += weighted(light, scene.Lights()[static_cast<size_t>(light)]->Le(ray));
-  }
-  return sum;
+    return PowerHeuristic(last.pdf, direct.SamplesOf(light) * lightPdf);
+  });
 }
 
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct) {
-  const Vec2d uDirection = sampler.Get2D();
-  PickedLight picked = scene.Picker().PickFor(at, sampler.Get1D());
-  if (picked.index < 0) return Color();
-  const int count = direct.SamplesOf(*scene.Lights()[static_cast<size_t>(picked.index)]);
-
-  const auto sample = [&](const Vec2d& u) {
-    const Light& light = *scene.Lights()[static_cast<size_t>(picked.index)];
-    if (direct.technique == DirectTechnique::Bsdf && !light.IsDelta()) return Color();
-    const std::optional<LiSample> li = light.Sample_Li(at, {picked.u, u});
-    if (!li) return Color();
-    const Color scattered = bsdf.Eval(hit.wo, li->wi, TransportMode::Radiance) * li->L;
-    if (scattered.IsBlack()) return Color();
-    ++stats.shadowRays;
-    if (!scene.Unoccluded(scene.ShadowRay(hit, *li))) return Color();
-    const double pdf = picked.probability * li->pdf;
-    const bool isWeighted = !li->isDelta && direct.technique == DirectTechnique::Mis;
-    const double bsdfPdf = isWeighted ? static_cast<double>(bsdf.Pdf(hit.wo, li->wi, TransportMode::Radiance)) : 0;
-    return scattered * static_cast<float>(PowerHeuristic(count * pdf, bsdfPdf) / pdf);
-  };
-  if (count == 1) return sample(uDirection);
-  Color sum;
-  for (int i = 0; i < count; ++i) {
-    Sampler numbers = sampler.Branch(i, count);
-    const Vec2d u = numbers.Get2D();
-    const double uLight = numbers.Get1D();
-    if (direct.lightSamples) {
-      picked = scene.Picker().PickFor(at, uLight);
-    } else {
-      picked.u = uLight;
-    }
-    sum += sample(u);
-  }
-  return sum / static_cast<float>(count);
+  return SampleDirectLight(
+      scene, hit, bsdf, at, sampler, stats, direct, [&](int, const LiSample& li, double pdf) -> double {
+        if (li.isDelta || direct.technique != DirectTechnique::Mis) return 1;
+        return PowerHeuristic(pdf, static_cast<double>(bsdf.Pdf(hit.wo, li.wi, TransportMode::Radiance)));
+      });
 }
 
 bool SurvivesRoulette(double u, float etaScale, Color* throughput) {

@@ -24,14 +24,23 @@ struct LastScattering {
   float pdf = 0;  ///< per solid angle, of the direction taken
 };
 
-/// Radiance that the path's last ray runs into, weighted against light sampling by the power heuristic (unless `direct`
-/// leaves all to one of the two). `hit` is null where the ray left the scene.
+/// Radiance that the path's last ray runs into: the sum over the lights it finds of their radiance times
+/// `weigh(int light)`. `hit` is null where the ray left the scene.
+template <typename Weigh>
+Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, Weigh&& weigh);
+
+/// The same, weighted against light sampling by the power heuristic (unless `direct` leaves all to one of the two).
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last,
                    const DirectLighting& direct = {});
 
-/// Radiance scattered at `hit` toward `hit.wo` of light that is sampled at the lights, weighted against BSDF sampling
-/// by the power heuristic. `at` as `ContextOf` gives it. Takes three numbers of the sampler; more samples than one take
-/// the branches of its block.
+/// Radiance scattered at `hit` toward `hit.wo` of light that is sampled at the lights, times `weigh(int light, const
+/// LiSample&, double pdf)`, where `pdf` is the density of all samples together. `at` as `ContextOf` gives it. Takes
+/// three numbers of the sampler; more samples than one take the branches of its block.
+template <typename Weigh>
+Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
+                        Sampler& sampler, PassStats& stats, const DirectLighting& direct, Weigh&& weigh);
+
+/// The same, weighted against BSDF sampling by the power heuristic.
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
@@ -42,5 +51,57 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
 /// True where `path` still has its share of energy after Russian roulette; scales its throughput. `etaScale` undoes the
 /// change of radiance by refraction, which comes back when the path leaves the medium (pbrt-v4, section 14.5.4).
 bool SurvivesRoulette(double u, float etaScale, Color* throughput);
+
+template <typename Weigh>
+Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, Weigh&& weigh) {
+  const auto weighted = [&](int light, const Color& radiance) {
+    return radiance.IsBlack() ? radiance : radiance * static_cast<float>(weigh(light));
+  };
+  Color sum;
+  if (hit) {
+    const int light = scene.AreaLightAt(*hit);
+    if (light >= 0) sum = weighted(light, scene.Lights()[static_cast<size_t>(light)]->L(*hit, hit->wo));
+  } else {
+    for (int light : scene.InfiniteLights())
+      sum += weighted(light, scene.Lights()[static_cast<size_t>(light)]->Le(ray));
+  }
+  return sum;
+}
+
+template <typename Weigh>
+Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
+                        Sampler& sampler, PassStats& stats, const DirectLighting& direct, Weigh&& weigh) {
+  const Vec2d uDirection = sampler.Get2D();
+  PickedLight picked = scene.Picker().PickFor(at, sampler.Get1D());
+  if (picked.index < 0) return Color();
+  const int count = direct.SamplesOf(*scene.Lights()[static_cast<size_t>(picked.index)]);
+
+  const auto sample = [&](const Vec2d& u) {
+    const Light& light = *scene.Lights()[static_cast<size_t>(picked.index)];
+    if (direct.technique == DirectTechnique::Bsdf && !light.IsDelta()) return Color();
+    const std::optional<LiSample> li = light.Sample_Li(at, {picked.u, u});
+    if (!li) return Color();
+    const Color scattered = bsdf.Eval(hit.wo, li->wi, TransportMode::Radiance) * li->L;
+    if (scattered.IsBlack()) return Color();
+    ++stats.shadowRays;
+    if (!scene.Unoccluded(scene.ShadowRay(hit, *li))) return Color();
+    const double pdf = picked.probability * li->pdf;
+    return scattered * static_cast<float>(weigh(picked.index, *li, count * pdf) / pdf);
+  };
+  if (count == 1) return sample(uDirection);
+  Color sum;
+  for (int i = 0; i < count; ++i) {
+    Sampler numbers = sampler.Branch(i, count);
+    const Vec2d u = numbers.Get2D();
+    const double uLight = numbers.Get1D();
+    if (direct.lightSamples) {
+      picked = scene.Picker().PickFor(at, uLight);
+    } else {
+      picked.u = uLight;
+    }
+    sum += sample(u);
+  }
+  return sum / static_cast<float>(count);
+}
 
 }  // namespace dapple

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "integrators/hybrid.h"
 #include "integrators/light_tracing.h"
 #include "integrators/path.h"
 #include "integrators/sppm.h"
@@ -22,12 +23,13 @@ PassStats& PassStats::operator+=(const PassStats& s) {
   return *this;
 }
 
-std::vector<std::string_view> IntegratorNames() { return {"path", "light_tracing", "sppm"}; }
+std::vector<std::string_view> IntegratorNames() { return {"path", "light_tracing", "sppm", "hybrid"}; }
 
 std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const IntegratorOptions& options) {
   if (name == "path") return std::make_unique<PathIntegrator>(options);
   if (name == "light_tracing") return std::make_unique<LightTracingIntegrator>(options);
   if (name == "sppm") return std::make_unique<SppmIntegrator>(options);
+  if (name == "hybrid") return std::make_unique<HybridIntegrator>(options);
   throw Error(fmt::format("unknown integrator \"{}\"; expected auto, {}", name, fmt::join(IntegratorNames(), ", ")));
 }
 

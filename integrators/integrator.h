@@ -54,7 +54,7 @@ struct IntegratorOptions {
   int maxDepth = 32;                  ///< scattering events on a path from light to camera
   std::optional<int> photonsPerPass;  ///< light paths a pass
   std::optional<double> radius;       ///< starting radius of density estimates, in scene units
-  double radiusInPixels = 1;          ///< the same in footprints of a pixel, where `radius` is absent
+  double radiusScale = 1;             ///< factor on the learned radii (gather_radius.h), where `radius` is absent
   bool guideEmission = true;          ///< a pilot learns where photons are of use (src/photons/emission_guide.h)
   DirectLighting direct;
 };

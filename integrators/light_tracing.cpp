@@ -1,11 +1,8 @@
 #include "integrators/light_tracing.h"
 
-#include <vector>
-
 #include "integrators/camera_path.h"
+#include "integrators/photon_shooting.h"
 #include "integrators/pixel_loop.h"
-#include "src/base/hash.h"
-#include "src/base/parallel.h"
 
 namespace dapple {
 
@@ -16,6 +13,7 @@ void LightTracingIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
   emission_.emplace(scene);
+  paths_ = LightPathsOfPass(scene, options_);
 }
 
 PassStats LightTracingIntegrator::RenderPass(int pass, Film& film) const {
@@ -43,29 +41,23 @@ PassStats LightTracingIntegrator::RenderEmitters(int pass, Film& film) const {
 }
 
 PassStats LightTracingIntegrator::RenderLightPaths(int pass, Film& film) const {
-  const Vec2i& resolution = film.FullResolution();
-  const int64_t paths = photonsPerPass_ ? *photonsPerPass_ : int64_t{resolution.x} * resolution.y;
-  constexpr int64_t kChunk = 4096;
-  std::vector<PassStats> chunkStats(static_cast<size_t>((paths + kChunk - 1) / kChunk));
-  ParallelForChunks(paths, kChunk, [&](int64_t begin, int64_t end) {
+  struct Chunk {
     PassStats stats;
-    for (int64_t path = begin; path < end; ++path) {
-      Sampler sampler = Sampler::ForLightPath(seed_, path, pass, paths);
-      const std::optional<EmissionSample> emitted = EmitPhoton(*emission_, sampler);
-      if (!emitted) continue;
-      ++stats.photonsEmitted;
-      stats.photonRays += TraceLightPath(*scene_, *emitted, sampler, maxDepth_, [&](const LightVertex& vertex) {
-        // The lens is a decision of its own, apart from the walk's.
-        constexpr int kLensBlock = 1 << 16;
-        Sampler lens = sampler;
-        lens.StartBlock(kLensBlock + vertex.scattered);
-        Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths), pass, film, stats);
+  };
+  const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(
+      *emission_, seed_, pass, paths_, [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
+        ++chunk.stats.photonsEmitted;
+        chunk.stats.photonRays +=
+            TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, [&](const LightVertex& vertex) {
+              // The lens is a decision of its own, apart from the walk's.
+              constexpr int kLensBlock = 1 << 16;
+              Sampler lens = sampler;
+              lens.StartBlock(kLensBlock + vertex.scattered);
+              Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths_), pass, film, chunk.stats);
+            });
       });
-    }
-    chunkStats[static_cast<size_t>(begin / kChunk)] = stats;
-  });
   PassStats sum;
-  for (const PassStats& stats : chunkStats) sum += stats;
+  for (const Chunk& chunk : chunks) sum += chunk.stats;
   return sum;
 }
 

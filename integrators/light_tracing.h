@@ -11,8 +11,7 @@ namespace dapple {
 
 class LightTracingIntegrator final : public Integrator {
  public:
-  explicit LightTracingIntegrator(const IntegratorOptions& options)
-      : maxDepth_(options.maxDepth), photonsPerPass_(options.photonsPerPass) {}
+  explicit LightTracingIntegrator(const IntegratorOptions& options) : options_(options) {}
 
   std::string_view Name() const override { return "light_tracing"; }
   /// Throws `Error` where the camera cannot be joined to a point.
@@ -25,10 +24,10 @@ class LightTracingIntegrator final : public Integrator {
   PassStats RenderLightPaths(int pass, Film& film) const;
   void Join(const LightVertex& vertex, const Vec2d& uLens, float weight, int pass, Film& film, PassStats& stats) const;
 
-  int maxDepth_;
-  std::optional<int> photonsPerPass_;
+  IntegratorOptions options_;
   const Scene* scene_ = nullptr;
   std::optional<EmissionSampler> emission_;
+  int64_t paths_ = 0;  // of a pass
   uint64_t seed_ = 0;
 };
 

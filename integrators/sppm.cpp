@@ -1,10 +1,6 @@
 #include "integrators/sppm.h"
 
-#include <vector>
-
 #include "integrators/pixel_loop.h"
-#include "src/base/parallel.h"
-#include "src/photons/emission_pilot.h"
 #include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
 #include "src/photons/same_surface.h"
@@ -12,9 +8,6 @@
 namespace dapple {
 
 namespace {
-
-// Knaus and Zwicker's alpha: bias squared and variance fall alike, with the power -2/3 of the passes.
-constexpr double kAlpha = 2.0 / 3;
 
 // Surfaces that look in few enough directions for the camera path to go on through them.
 bool IsGlossy(const Bsdf& bsdf) {
@@ -27,16 +20,13 @@ bool IsGlossy(const Bsdf& bsdf) {
 void SppmIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
-  emission_.emplace(scene,
-                    options_.guideEmission ? LearnEmissionGuide(scene, options_.maxDepth, seed) : EmissionGuide());
+  plan_.emplace(scene, options_, seed);
 }
 
 PassStats SppmIntegrator::RenderPass(int pass, Film& film) const {
-  const Vec2i& resolution = film.FullResolution();
-  const int64_t paths = options_.photonsPerPass ? *options_.photonsPerPass : int64_t{resolution.x} * resolution.y;
   PassStats stats;
-  const Map map = TracePhotons(pass, paths, &stats);
-  const PhotonPass photons{map, 1 / static_cast<float>(paths), RadiusFactor(pass, kAlpha)};
+  const Map map = TracePhotons(pass, &stats);
+  const PhotonPass photons{map, 1 / static_cast<float>(plan_->paths), RadiusFactor(pass)};
   stats += ForEachPixel(film, [&](const Vec2i& pixel, PassStats& tileStats) {
     Sampler sampler = Sampler::ForPixel(seed_, pixel, pass);
     const PixelSample sample = SamplePixel(*scene_, film, pixel, sampler);
@@ -46,46 +36,18 @@ PassStats SppmIntegrator::RenderPass(int pass, Film& film) const {
   return stats;
 }
 
-SppmIntegrator::Map SppmIntegrator::TracePhotons(int pass, int64_t paths, PassStats* stats) const {
-  struct Chunk {
-    std::vector<Vec3> positions;
-    std::vector<Photon> photons;
-    PassStats stats;
-  };
-  constexpr int64_t kChunk = 4096;
-  std::vector<Chunk> chunks(static_cast<size_t>((paths + kChunk - 1) / kChunk));
-  ParallelForChunks(paths, kChunk, [&](int64_t begin, int64_t end) {
-    Chunk& chunk = chunks[static_cast<size_t>(begin / kChunk)];
-    for (int64_t path = begin; path < end; ++path) {
-      Sampler sampler = Sampler::ForLightPath(seed_, path, pass, paths);
-      const std::optional<EmissionSample> emitted = EmitPhoton(*emission_, sampler);
-      if (!emitted) continue;
-      ++chunk.stats.photonsEmitted;
-      const auto store = [&](const LightVertex& v) {
-        // Light straight from its source is sampled where it is needed.
-        if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
-        chunk.positions.push_back(v.hit.p);
-        chunk.photons.push_back(
-            {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
-      };
-      chunk.stats.photonRays += TraceLightPath(*scene_, *emitted, sampler, options_.maxDepth, store);
-    }
+SppmIntegrator::Map SppmIntegrator::TracePhotons(int pass, PassStats* stats) const {
+  ShotPhotons<Photon> shot = ShootPhotons<
+      Photon>(*plan_, seed_, pass, [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
+    const auto store = [&](const LightVertex& v) {
+      // Light straight from its source is sampled where it is needed.
+      if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
+      chunk.Store(v.hit.p, {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
+    };
+    chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store);
   });
-
-  std::vector<Vec3> positions;
-  std::vector<Photon> photons;
-  size_t count = 0;
-  for (const Chunk& chunk : chunks) count += chunk.photons.size();
-  positions.reserve(count);
-  photons.reserve(count);
-  for (Chunk& chunk : chunks) {
-    positions.insert(positions.end(), chunk.positions.begin(), chunk.positions.end());
-    photons.insert(photons.end(), chunk.photons.begin(), chunk.photons.end());
-    *stats += chunk.stats;
-    chunk = {};
-  }
-  stats->photonsStored += static_cast<int64_t>(count);
-  return {std::move(positions), photons};
+  *stats += shot.stats;
+  return {std::move(shot.positions), std::move(shot.photons)};
 }
 
 Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,
@@ -93,7 +55,7 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
   Ray ray = camera.ray;
   Color radiance, throughput(1);
   LastScattering last;
-  float etaScale = 1, distance = 0;
+  float etaScale = 1;
   bool isBehindGlossy = false, isDone = false;
   for (int scattered = 0;;) {
     ++stats.cameraRays;
@@ -102,7 +64,6 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
     if (!isBehindGlossy || !last.isSpecular)
       radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, options_.direct);
     if (!hit) return radiance;
-    distance += hit->t;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
       ray = SpawnRay(*hit, ray.d);
@@ -121,11 +82,9 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
     const LightContext at = ContextOf(*scene_, *hit, bsdf, options_.direct);
     if (!bsdf.IsPurelySpecular()) {
       radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
-      const double footprint = camera.footprintAtLens + camera.footprintSpread * distance;
-      const double radius = options_.radius.value_or(options_.radiusInPixels * footprint) * photons.radiusFactor;
-      radiance +=
-          throughput * photons.weight *
-          Gather(photons.map, *hit, bsdf, {static_cast<float>(radius), options_.maxDepth - scattered, isGlossy}, stats);
+      const float radius = plan_->radius.At(hit->p).radius * photons.radiusFactor;
+      radiance += throughput * photons.weight *
+                  Gather(photons.map, *hit, bsdf, {radius, options_.maxDepth - scattered, isGlossy}, stats);
     }
 
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);

@@ -11,9 +11,8 @@
 #pragma once
 
 #include "integrators/camera_path.h"
-#include "integrators/integrator.h"
+#include "integrators/photon_shooting.h"
 #include "src/base/octahedral.h"
-#include "src/photons/light_path.h"
 #include "src/photons/photon_map.h"
 
 namespace dapple {
@@ -38,7 +37,7 @@ class SppmIntegrator final : public Integrator {
   };
   using Map = PhotonMap<Photon>;
 
-  Map TracePhotons(int pass, int64_t paths, PassStats* stats) const;
+  Map TracePhotons(int pass, PassStats* stats) const;
   /// What the photons of a pass are gathered with.
   struct PhotonPass {
     const Map& map;
@@ -57,7 +56,7 @@ class SppmIntegrator final : public Integrator {
 
   IntegratorOptions options_;
   const Scene* scene_ = nullptr;
-  std::optional<EmissionSampler> emission_;
+  std::optional<PhotonPlan> plan_;
   uint64_t seed_ = 0;
 };
 

@@ -200,6 +200,7 @@ std::optional<LeSample> AreaLight::Sample_Le(const LeRandom& u) const {
   sample.ray = Ray{OffsetOrigin(point.p, point.pError, point.n, d), d};
   sample.n = point.n;
   sample.cosTheta = std::abs(cosTheta);
+  sample.primitive = primitive.index;
   return sample;
 }
 

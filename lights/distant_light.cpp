@@ -23,6 +23,7 @@ std::optional<LiSample> DistantLight::Sample_Li(const LightContext& at, const Li
   sample.pdf = 1;
   sample.p = PointOutside(extent_, at.p, sample.wi);
   sample.isDelta = true;
+  sample.isDistant = true;
   return sample;
 }
 

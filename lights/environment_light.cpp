@@ -31,6 +31,7 @@ std::optional<LiSample> EnvironmentLight::Sample_Li(const LightContext& at, cons
   if (sample.pdf == 0) return std::nullopt;
   sample.L = value.L;
   sample.p = PointOutside(extent_, at.p, sample.wi);
+  sample.isDistant = true;
   return sample;
 }
 
@@ -104,6 +105,7 @@ std::optional<LiSample> UniformEnvironmentLight::Sample_Li(const LightContext& a
   if (sample.pdf == 0) return std::nullopt;
   sample.L = L_;
   sample.p = PointOutside(extent_, at.p, sample.wi);
+  sample.isDistant = true;
   return sample;
 }
 

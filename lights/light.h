@@ -64,6 +64,7 @@ struct LiSample {
   float pError = 0;  ///< as in SurfaceInteraction
   Vec3 n{0, 0, 0};   ///< its normal; zero where there is no surface
   bool isDelta = false;
+  bool isDistant = false;  ///< comes from infinitely far away: a direction and no place
 };
 
 /// A ray that leaves a light.
@@ -76,6 +77,7 @@ struct LeSample {
   double pdfDir = 0;   ///< per solid angle; 1 for a discrete direction
   bool deltaPos = false;
   bool deltaDir = false;
+  int primitive = 0;  ///< of the light's shape, where it has one
 
   /// The flux that this ray stands for.
   Color Flux() const { return Le * static_cast<float>(cosTheta / (pdfPos * pdfDir)); }

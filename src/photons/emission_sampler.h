@@ -20,6 +20,8 @@ struct EmissionSample {
   double bend = 1;      ///< density of `own` in the unit cube: 1 without a guide
   /// The flux that one emitted photon stands for: the mean over photons is the scene's emitted power.
   Color Flux() const { return le.Flux() * static_cast<float>(1 / (pdfLight * bend)); }
+  /// Of light, position and direction together.
+  double Pdf() const { return pdfLight * le.pdfPos * le.pdfDir * bend; }
 };
 
 struct EmissionPdf {
@@ -27,6 +29,8 @@ struct EmissionPdf {
   double position = 0;   ///< as LeSample::pdfPos
   double direction = 0;  ///< as LeSample::pdfDir
   double bend = 1;       ///< of position and direction together: their density is position * direction * bend
+
+  double Product() const { return light * position * direction * bend; }
 };
 
 class EmissionSampler {

@@ -1,6 +1,10 @@
 // The photon tracer: one light path, from its emission to its last scattering, handed vertex by vertex to a visitor.
 #pragma once
 
+#include <utility>
+#include <vector>
+
+#include "src/base/parallel.h"
 #include "src/photons/emission_sampler.h"
 #include "src/sampling/sampler.h"
 
@@ -32,9 +36,11 @@ inline std::optional<EmissionSample> EmitPhoton(const EmissionSampler& emission,
 /// Walks on from an emitted photon and calls `visit(const LightVertex&)` at each surface it meets, black ones excepted.
 /// A vertex is visited only if one more scattering event there keeps the path within `maxDepth` of them. Russian
 /// roulette keeps a path with the share of its flux that a scattering leaves, so that the power of photons stays even
-/// (Jensen 2001, section 5.2). Vertex n uses block n + 1 of the sampler. Returns the number of segments traced.
-template <typename Visitor>
-int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth, Visitor&& visit) {
+/// (Jensen 2001, section 5.2). Vertex n uses block n + 1 of the sampler. Where the path goes on, `scatter(const
+/// LightVertex&, const BsdfSample&)` is called with the way it takes. Returns the number of segments traced.
+template <typename Visitor, typename Scatter>
+int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth, Visitor&& visit,
+                   Scatter&& scatter) {
   Ray ray = emitted.le.ray;
   Color flux = emitted.Flux();
   int segments = 0;
@@ -50,7 +56,8 @@ int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sa
     }
     const Bsdf bsdf = material->GetBsdf(*hit);
     if (bsdf.IsBlack()) break;
-    visit(LightVertex{*hit, bsdf, flux, scattered, allSpecular && scattered > 0});
+    const LightVertex vertex{*hit, bsdf, flux, scattered, allSpecular && scattered > 0};
+    visit(vertex);
 
     sampler.StartBlock(scattered + 1);
     const double uLobe = sampler.Get1D();
@@ -60,12 +67,37 @@ int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sa
     const Color scatteredFlux = flux * next->weight;
     const float keep = std::min(1.f, scatteredFlux.MaxComponent() / flux.MaxComponent());
     if (!(sampler.Get1D() < keep)) break;
+    scatter(vertex, *next);
     flux = scatteredFlux / keep;
     ray = SpawnRay(*hit, next->wi);
     allSpecular &= next->IsSpecular();
     ++scattered;
   }
   return segments;
+}
+
+template <typename Visitor>
+int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth, Visitor&& visit) {
+  return TraceLightPath(scene, emitted, sampler, maxDepth, std::forward<Visitor>(visit),
+                        [](const LightVertex&, const BsdfSample&) {});
+}
+
+/// Begins `paths` light paths of a pass and calls `walk(const EmissionSample&, const Sampler&, Chunk&)` for each that
+/// leaves a light. Paths are cut into chunks of 4,096, whatever the number of threads, which run in parallel, each with
+/// a `Chunk` of its own. Returns the chunks in the order of the paths.
+template <typename Chunk, typename Walk>
+std::vector<Chunk> ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, int64_t paths,
+                                    Walk&& walk) {
+  constexpr int64_t kChunk = 4096;
+  std::vector<Chunk> chunks(static_cast<size_t>((paths + kChunk - 1) / kChunk));
+  ParallelForChunks(paths, kChunk, [&](int64_t begin, int64_t end) {
+    Chunk& chunk = chunks[static_cast<size_t>(begin / kChunk)];
+    for (int64_t path = begin; path < end; ++path) {
+      Sampler sampler = Sampler::ForLightPath(seed, path, pass, paths);
+      if (const std::optional<EmissionSample> emitted = EmitPhoton(emission, sampler)) walk(*emitted, sampler, chunk);
+    }
+  });
+  return chunks;
 }
 
 }  // namespace dapple

@@ -55,10 +55,10 @@ std::vector<bool> PixelsOnSpecularSurfaces(const Scene& scene) {
   return flags;
 }
 
-IntegratorOptions Options(double radiusInPixels = 1) {
+IntegratorOptions Options(double radiusScale = 1) {
   IntegratorOptions options;
   options.photonsPerPass = 100000;
-  options.radiusInPixels = radiusInPixels;
+  options.radiusScale = radiusScale;
   return options;
 }
 

@@ -1,0 +1,86 @@
+// Path tracing and photons, joined by multiple importance sampling: each light path is found by whatever finds it best.
+//
+// A pass traces photons and builds a photon map; then camera paths, as in `path`, sample light and run into lights, and
+// at each of their vertices also merge with the photons within a radius. Every way to find a light path has its share
+// by the balance heuristic (merging_weights.h): a diffuse wall lit by a window stays path traced, the caustic of a
+// small lamp on it comes from photons, and what stands between slides from one to the other. No roughness decides.
+//
+// Work follows the weights. Where many photons are at hand, few camera paths go on after a diffuse scattering; and
+// after one, few merge again, for a single direction of light would be all that they learn. Both are probabilities that
+// change smoothly with the density of the scattering, and part of the weights. Radii: gather_radius.h.
+#pragma once
+
+#include "integrators/camera_path.h"
+#include "integrators/merging_weights.h"
+#include "integrators/photon_shooting.h"
+#include "src/base/octahedral.h"
+#include "src/photons/photon_map.h"
+
+namespace dapple {
+
+class HybridIntegrator final : public Integrator {
+ public:
+  explicit HybridIntegrator(const IntegratorOptions& options) : options_(options) {}
+
+  std::string_view Name() const override { return "hybrid"; }
+  void Prepare(const Scene& scene, uint64_t seed) override;
+  PassStats RenderPass(int pass, Film& film) const override;
+  int DefaultPasses() const override { return 64; }
+
+ private:
+  /// A photon where it met a surface.
+  struct Photon {
+    Color flux;
+    OctahedralVector wi;      ///< to where the light came from
+    OctahedralVector normal;  ///< geometric
+    float merging, paths;     ///< `MergingWeights::Before` of its light path
+    int scattered;            ///< scattering events before this surface, at least one
+  };
+
+  /// How a pass merges.
+  struct Merging {
+    float radiusFactor;  ///< on the starting radius
+    PhotonMap<Photon> map;
+  };
+
+  /// A camera path on its way.
+  struct CameraWalk {
+    Ray ray;
+    Color throughput{1};
+    LastScattering last;
+    MergingWeights weights;
+    double mergeProbability = 1;
+    int scattered = 0;
+  };
+
+  /// Merging at a place: functions of the place alone, so that both walks agree on them.
+  struct MergeSite {
+    float radius;
+    double eta;      ///< weight of merging, see merging_weights.h
+    double photons;  ///< expected within the radius
+  };
+  MergeSite SiteAt(const Vec3& p, const Merging& merging) const;
+
+  /// Leaves the map to be filled.
+  PassStats ShootPhotons(int pass, Merging* merging) const;
+  Color Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const;
+  /// Radiance that the path's last ray runs into, with its weight. `hit` is null where the ray left the scene.
+  Color EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit) const;
+  Color SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,
+                          const Bsdf& bsdf, Sampler& sampler, PassStats& stats) const;
+  /// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds
+  /// the direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.
+  double LightPdf(const LightContext& at, int light, const Vec3& wi, const SurfaceInteraction* hit) const;
+  /// Radiance of the photons within the radius, with their weights.
+  Color Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
+              const Bsdf& bsdf, PassStats& stats) const;
+
+  class LightWalk;
+
+  IntegratorOptions options_;
+  const Scene* scene_ = nullptr;
+  std::optional<PhotonPlan> plan_;
+  uint64_t seed_ = 0;
+};
+
+}  // namespace dapple

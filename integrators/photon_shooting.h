@@ -1,0 +1,62 @@
+// What integrators with photons share: the plan of their passes, and the photons of a pass.
+#pragma once
+
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "src/photons/gather_radius.h"
+#include "src/photons/light_path.h"
+
+namespace dapple {
+
+/// Light paths of a pass: as asked for, else one a pixel of the picture.
+int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options);
+
+/// How photons are emitted, how many, and within what radius they are gathered.
+struct PhotonPlan {
+  /// Learned by pilots of fixed length, from scene, options and seed alone.
+  PhotonPlan(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
+
+  EmissionSampler emission;
+  int64_t paths;
+  GatherRadius radius;
+};
+
+/// Photons where they met surfaces: `photons[i]` stands at `positions[i]`.
+template <typename Photon>
+struct ShotPhotons {
+  std::vector<Vec3> positions;
+  std::vector<Photon> photons;
+  PassStats stats;
+
+  void Store(const Vec3& position, const Photon& photon) {
+    positions.push_back(position);
+    photons.push_back(photon);
+  }
+};
+
+/// Walks the light paths of a pass: `walk(const EmissionSample&, const Sampler&, ShotPhotons<Photon>&)` stores what it
+/// likes. The photons come in the order of the paths.
+template <typename Photon, typename Walk>
+ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass, Walk&& walk) {
+  auto chunks = ForEachLightPath<ShotPhotons<Photon>>(
+      plan.emission, seed, pass, plan.paths, [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
+        ++chunk.stats.photonsEmitted;
+        walk(emitted, sampler, chunk);
+      });
+  ShotPhotons<Photon> all;
+  size_t count = 0;
+  for (const auto& chunk : chunks) count += chunk.photons.size();
+  all.positions.reserve(count);
+  all.photons.reserve(count);
+  for (auto& chunk : chunks) {
+    all.positions.insert(all.positions.end(), chunk.positions.begin(), chunk.positions.end());
+    all.photons.insert(all.photons.end(), chunk.photons.begin(), chunk.photons.end());
+    all.stats += chunk.stats;
+    chunk = {};
+  }
+  all.stats.photonsStored += static_cast<int64_t>(count);
+  return all;
+}
+
+}  // namespace dapple

@@ -1,0 +1,124 @@
+#include "src/photons/gather_radius.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "src/base/hash.h"
+#include "src/base/parallel.h"
+#include "src/photons/light_path.h"
+#include "src/photons/photon_map.h"
+
+namespace dapple {
+
+namespace {
+
+constexpr int64_t kPilotPaths = 1 << 16;
+
+/// Where the light paths of the pilot leave photons.
+std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed) {
+  using Positions = std::vector<Vec3>;
+  const auto chunks = ForEachLightPath<Positions>(
+      emission, seed, 0, kPilotPaths, [&](const EmissionSample& emitted, const Sampler& sampler, Positions& chunk) {
+        TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
+          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) chunk.push_back(v.hit.p);
+        });
+      });
+  Positions all;
+  for (const Positions& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
+  return all;
+}
+
+}  // namespace
+
+GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options)
+    : scale_(static_cast<float>(options.scale)), camera_(scene.GetCamera().Position()), unit_(scene.Extent().radius) {
+  if (options.fixed) fixed_ = static_cast<float>(*options.fixed);
+  const Vec2i& resolution = scene.Settings().resolution;
+  const Vec2 middle(static_cast<float>(resolution.x) / 2, static_cast<float>(resolution.y) / 2);
+  const CameraRay camera = scene.GetCamera().GenerateRay(middle, Vec2d(0.5), 0.5);
+  widestAtLens_ = camera.footprintAtLens * static_cast<float>(kMaxPixels);
+  widestSpread_ = camera.footprintSpread * static_cast<float>(kMaxPixels);
+  constexpr uint64_t kPilot = 3;
+  const std::vector<Vec3> positions = ShootPilot(scene, emission, options.maxDepth, Hash(options.seed, kPilot));
+  Fill(positions, DensitiesAt(positions, static_cast<double>(paths)));
+}
+
+std::vector<float> GatherRadius::DensitiesAt(const std::vector<Vec3>& positions, double pathsOfPass) const {
+  const double toPass = pathsOfPass / kPilotPaths;
+  // No more photons are counted than say how dense they are.
+  constexpr size_t kCounted = 16;
+  const PhotonMap<char> map(positions, std::vector<char>(positions.size()));
+  std::vector<float> densities(positions.size());
+  ParallelForChunks(static_cast<int64_t>(positions.size()), 1024, [&](int64_t begin, int64_t end) {
+    std::vector<float> distances;
+    for (int64_t i = begin; i < end; ++i) {
+      const Vec3& p = positions[static_cast<size_t>(i)];
+      float radiusSquared = Sqr(Widest(p));
+      distances.clear();
+      map.ForEachWithin(p, Widest(p), [&](const Vec3&, char, float d2) { distances.push_back(d2); });
+      if (distances.size() > kCounted) {
+        const auto last = distances.begin() + kCounted;
+        std::nth_element(distances.begin(), last, distances.end());
+        radiusSquared = *last;
+        distances.resize(kCounted);
+      }
+      // The photon in the middle does not count; many in one place have no end of density.
+      const double area = kPiD * static_cast<double>(std::max(radiusSquared, Sqr(Widest(p)) * 1e-6f));
+      densities[static_cast<size_t>(i)] = static_cast<float>(static_cast<double>(distances.size() - 1) * toPass / area);
+    }
+  });
+  return densities;
+}
+
+void GatherRadius::Fill(const std::vector<Vec3>& positions, const std::vector<float>& densities) {
+  // Two cells a photon at most, in a table that is at least half empty.
+  cells_.assign(std::bit_ceil(4 * positions.size() + 1), {});
+  for (size_t i = 0; i < positions.size(); ++i) {
+    for (const Level level : {Level::Fine, Level::Coarse}) {
+      const uint64_t key = KeyOf(positions[i], level);
+      size_t slot = key & (cells_.size() - 1);
+      while (cells_[slot].key != 0 && cells_[slot].key != key) slot = (slot + 1) & (cells_.size() - 1);
+      cells_[slot].key = key;
+      cells_[slot].sum += static_cast<double>(densities[i]);
+      ++cells_[slot].count;
+    }
+  }
+}
+
+float GatherRadius::Widest(const Vec3& p) const { return widestAtLens_ + widestSpread_ * Distance(p, camera_); }
+
+uint64_t GatherRadius::KeyOf(const Vec3& p, Level level) const {
+  // A power of two, so that neighbours at nearly the same distance share a grid.
+  const int exponent = std::ilogb(Widest(p) / unit_) + (level == Level::Coarse ? 2 : 0);
+  const Vec3d fromCamera = (ToDouble(p) - ToDouble(camera_)) / static_cast<double>(unit_);
+  const auto coordinate = [&](double x) { return static_cast<int64_t>(std::floor(std::ldexp(x, -exponent))); };
+  const uint64_t key = Hash(static_cast<uint64_t>(exponent), level == Level::Coarse, coordinate(fromCamera.x),
+                            coordinate(fromCamera.y), coordinate(fromCamera.z));
+  return key | 1;
+}
+
+const GatherRadius::Cell* GatherRadius::Find(uint64_t key) const {
+  for (size_t slot = key & (cells_.size() - 1);; slot = (slot + 1) & (cells_.size() - 1)) {
+    if (cells_[slot].key == key) return &cells_[slot];
+    if (cells_[slot].key == 0) return nullptr;
+  }
+}
+
+GatherForecast GatherRadius::At(const Vec3& p) const {
+  const float widest = Widest(p);
+  const Cell* cell = Find(KeyOf(p, Level::Fine));
+  if (!cell) cell = Find(KeyOf(p, Level::Coarse));
+  const float density = cell ? static_cast<float>(cell->sum / static_cast<double>(cell->count)) : 0;
+  GatherForecast forecast;
+  if (fixed_) {
+    forecast.radius = *fixed_;
+  } else {
+    const float wanted = density > 0 ? std::sqrt(static_cast<float>(kPhotons) * kInvPi / density) : widest;
+    forecast.radius = std::min(wanted, widest) * scale_;
+  }
+  forecast.photons = density * kPi * Sqr(forecast.radius);
+  return forecast;
+}
+
+}  // namespace dapple
