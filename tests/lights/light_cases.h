@@ -2,13 +2,13 @@
 #pragma once
 
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "lights/light.h"
 #include "src/geometry/shape.h"
 #include "src/image/image.h"
+#include "tests/support/random_numbers.h"
 
 namespace dapple {
 
@@ -24,29 +24,24 @@ struct LightCase {
 
 std::vector<LightCase> AllLights();
 
-/// Independent uniform random numbers.
-class RandomNumbers {
- public:
-  explicit RandomNumbers(unsigned seed) : engine_(seed) {}
-  double Get1D() { return uniform_(engine_); }
-  Vec2d Get2D() {
-    const double x = Get1D();
-    return {x, Get1D()};
-  }
-  LeRandom Le() {
-    LeRandom u;
-    u.part = Get1D(), u.position = Get2D(), u.direction = Get2D();
-    return u;
-  }
-  LiRandom Li() {
-    LiRandom u;
-    u.part = Get1D(), u.direction = Get2D();
-    return u;
-  }
+inline LeRandom DrawLe(testing::UniformNumbers& random) {
+  LeRandom u;
+  u.part = random.Get1D(), u.position = random.Get2D(), u.direction = random.Get2D();
+  return u;
+}
 
- private:
-  std::mt19937_64 engine_;
-  std::uniform_real_distribution<double> uniform_{0, 1};
+inline LiRandom DrawLi(testing::UniformNumbers& random) {
+  LiRandom u;
+  u.part = random.Get1D(), u.direction = random.Get2D();
+  return u;
+}
+
+/// Independent uniform random numbers, as lights take them.
+class RandomNumbers : public testing::UniformNumbers {
+ public:
+  using UniformNumbers::UniformNumbers;
+  LeRandom Le() { return DrawLe(*this); }
+  LiRandom Li() { return DrawLi(*this); }
 };
 
 /// Mean of numbers and its standard error.
@@ -59,7 +54,9 @@ class Mean {
     squares_ += delta * (x - mean_);
   }
   double Value() const { return mean_; }
-  double StandardError() const { return std::sqrt(std::max(0.0, squares_) / (count_ * (count_ - 1))); }
+  double Count() const { return count_; }
+  double StandardDeviation() const { return std::sqrt(std::max(0.0, squares_) / (count_ - 1)); }
+  double StandardError() const { return StandardDeviation() / std::sqrt(count_); }
 
  private:
   double count_ = 0, mean_ = 0, squares_ = 0;

@@ -22,7 +22,7 @@ struct Box {
 };
 
 /// The integral of `f` over a box: Gauss product rules, the box cut in two along the axis where `f` varies most, until
-/// D cuts, one inside the other, change nothing beyond `tolerance` (which falls with the size of the parts), or `depth`
+/// D cuts, one inside the other, change nothing beyond `tolerance` (of which each half has half), or `depth`
 /// cuts were made. Three points along each axis up to two dimensions, else two.
 template <int D, typename F>
 class AdaptiveQuadrature {
@@ -39,6 +39,8 @@ class AdaptiveQuadrature {
                                                       : std::array{-0.577350269189625765, 0.577350269189625765, 0.0};
   static constexpr std::array<double, 3> kWeight =
       D <= 2 ? std::array{5.0 / 18, 8.0 / 18, 5.0 / 18} : std::array{0.5, 0.5, 0.0};
+  // Cuts in a row that must change nothing: one may by chance, and says nothing of what hides along another axis.
+  static constexpr int kAgreements = D <= 2 ? 2 * D : D + 1;
   static constexpr size_t Power(size_t base, int exponent) {
     return exponent == 0 ? 1 : base * Power(base, exponent - 1);
   }
@@ -107,7 +109,7 @@ class AdaptiveQuadrature {
     return best;
   }
 
-  // `agreed`: how many cuts before this one changed nothing. One alone says nothing of what hides along another axis.
+  // `agreed`: how many cuts before this one changed nothing.
   double Refine(const Box<D>& box, const Result& whole, Splits splits, int agreed, double tolerance, int depth) const {
     const size_t axis = agreed > 0 ? LeastCut(splits) : whole.axis;
     Box<D> first = box, second = box;
@@ -116,9 +118,9 @@ class AdaptiveQuadrature {
     const Result a = Apply(first, splits), b = Apply(second, splits);
     const double sum = a.integral + b.integral;
     agreed = std::abs(sum - whole.integral) + whole.atCorners < tolerance ? agreed + 1 : 0;
-    if (depth <= 1 || agreed == D) return sum;
-    const double part = tolerance * std::numbers::sqrt2 / 2;
-    return Refine(first, a, splits, agreed, part, depth - 1) + Refine(second, b, splits, agreed, part, depth - 1);
+    if (depth <= 1 || agreed == kAgreements) return sum;
+    return Refine(first, a, splits, agreed, tolerance / 2, depth - 1) +
+           Refine(second, b, splits, agreed, tolerance / 2, depth - 1);
   }
 
   static size_t LeastCut(const Splits& splits) {
