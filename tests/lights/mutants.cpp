@@ -1,0 +1,410 @@
+#include "tests/lights/mutants.h"
+
+#include <cmath>
+
+#include "lights/area_light.h"
+#include "lights/distant_light.h"
+#include "lights/emission_disk.h"
+#include "lights/environment_light.h"
+#include "lights/spot_light.h"
+#include "src/base/numerics.h"
+#include "src/geometry/disk.h"
+#include "src/geometry/sphere.h"
+#include "src/geometry/triangle_mesh.h"
+#include "src/sampling/warps.h"
+
+namespace dapple {
+
+namespace {
+
+/// Emitted rays and directions toward the light go through one fault: `Bend` moves what was drawn, `Unbend` is its
+/// inverse. A faulty sampler returns the moved draw with the density that the light has there; a faulty density is the
+/// light's own at the place that would have been moved here: both together are consistent with each other.
+class BentEnvironment : public LightDecorator {
+ public:
+  using LightDecorator::LightDecorator;
+
+  std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override {
+    std::optional<LiSample> sample = light_->Sample_Li(at, u);
+    if (!sample) return std::nullopt;
+    if (SamplerIsFaulty()) sample->wi = Bend(sample->wi);
+    sample->L = light_->Le(Ray{at.p, sample->wi});
+    sample->pdf = Pdf_Li(at, sample->wi, nullptr);
+    return sample;
+  }
+  double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const override {
+    return light_->Pdf_Li(at, DensityIsFaulty() ? Unbend(wi) : wi, nullptr);
+  }
+  std::optional<LeSample> Sample_Le(const LeRandom& u) const override {
+    std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    if (SamplerIsFaulty()) {
+      const Vec3 wi = Bend(-sample->ray.d);
+      sample->ray = Ray{EmissionDisk(kTestExtent, wi).Sample(u.position), -wi};
+    }
+    sample->Le = light_->Le(Ray{Vec3(0), -sample->ray.d});
+    const LePdf pdf = Pdf_Le(sample->ray, sample->n);
+    sample->pdfPos = pdf.position, sample->pdfDir = pdf.direction;
+    return sample;
+  }
+  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override {
+    LePdf pdf = light_->Pdf_Le(ray, n);
+    if (DensityIsFaulty()) pdf.direction = light_->Pdf_Li(LightContext(Vec3(0)), Unbend(-ray.d), nullptr);
+    return pdf;
+  }
+
+ protected:
+  virtual Vec3 Bend(const Vec3& wi) const = 0;
+  virtual Vec3 Unbend(const Vec3& wi) const = 0;
+};
+
+/// Half a texel of a map of 16 columns around its axis.
+class HalfTexelShift final : public BentEnvironment {
+ public:
+  using BentEnvironment::BentEnvironment;
+
+ protected:
+  static Vec3 Turn(const Vec3& w, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle), x = w.x, y = w.y;
+    return ToFloat(Vec3d(c * x - s * y, s * x + c * y, w.z));
+  }
+  Vec3 Bend(const Vec3& wi) const override { return Turn(wi, kPiD / 16); }
+  Vec3 Unbend(const Vec3& wi) const override { return Turn(wi, -kPiD / 16); }
+};
+
+/// Rows of the map counted from the other pole.
+class FlippedRows final : public BentEnvironment {
+ public:
+  using BentEnvironment::BentEnvironment;
+
+ protected:
+  Vec3 Bend(const Vec3& wi) const override { return {wi.x, wi.y, -wi.z}; }
+  Vec3 Unbend(const Vec3& wi) const override { return {wi.x, wi.y, -wi.z}; }
+};
+
+/// Two axes of the map swapped.
+class SwappedAxes final : public BentEnvironment {
+ public:
+  using BentEnvironment::BentEnvironment;
+
+ protected:
+  Vec3 Bend(const Vec3& wi) const override { return {wi.z, wi.y, wi.x}; }
+  Vec3 Unbend(const Vec3& wi) const override { return {wi.z, wi.y, wi.x}; }
+};
+
+template <typename Faulty>
+Mutant OfMap(Place place) {
+  auto map = std::make_unique<EnvironmentLight>(RandomEnvironment(16, 8, 1), Transform(), Color(1),
+                                                EnvironmentMapping::LatLong);
+  return {nullptr, std::make_unique<Faulty>(std::move(map), place)};
+}
+
+/// Emitted rays whose draw and densities a fault changes; next-event estimation is left as it is.
+class FaultyEmission : public LightDecorator {
+ public:
+  using LightDecorator::LightDecorator;
+
+  std::optional<LeSample> Sample_Le(const LeRandom& u) const override {
+    std::optional<LeSample> sample = SamplerIsFaulty() ? FaultyDraw(u) : light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const LePdf pdf = Pdf_Le(sample->ray, sample->n);
+    // A draw where the light itself has no density claims that of a proper one.
+    if (pdf.position > 0) sample->pdfPos = pdf.position;
+    if (pdf.direction > 0) sample->pdfDir = pdf.direction;
+    return sample;
+  }
+  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override {
+    return DensityIsFaulty() ? FaultyDensity(ray, n) : light_->Pdf_Le(ray, n);
+  }
+
+ protected:
+  virtual std::optional<LeSample> FaultyDraw(const LeRandom& u) const = 0;
+  virtual LePdf FaultyDensity(const Ray& ray, const Vec3& n) const = 0;
+
+  /// A ray of the light, sent elsewhere.
+  static LeSample Redirected(LeSample sample, const Vec3& d) {
+    sample.ray = Ray{sample.ray.o, d};
+    if (LengthSquared(sample.n) > 0) sample.cosTheta = AbsDot(sample.n, d);
+    return sample;
+  }
+};
+
+/// Rays of a one-sided lamp leave its back.
+class FlippedNormal final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const Vec3 d = sample->ray.d - sample->n * (2 * Dot(sample->n, sample->ray.d));
+    LeSample flipped = Redirected(*sample, d);
+    flipped.ray.o = sample->ray.o + d * 1e-4f;
+    return flipped;
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override { return light_->Pdf_Le(ray, -n); }
+};
+
+/// Directions uniform over the hemisphere instead of by the cosine.
+class MissingCosine final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    const std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    return Redirected(*sample, Frame::FromZ(sample->n).ToWorld(ToFloat(SampleHemisphere(u.direction))));
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
+    return {light_->Pdf_Le(ray, n).position, Dot(ray.d, n) > 0 ? kHemispherePdf : 0};
+  }
+};
+
+/// A two-sided lamp of which only the front is drawn, with twice the density there.
+class FactorTwo final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    LeRandom front = u;
+    front.direction.x /= 2;
+    return light_->Sample_Le(front);
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
+    const LePdf pdf = light_->Pdf_Le(ray, n);
+    return {pdf.position, Dot(ray.d, n) > 0 ? 2 * pdf.direction : 0};
+  }
+};
+
+/// A disk of nine tenths of its radius.
+class WrongDiskArea final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  static constexpr float kShare = 0.9f;
+  static EmissionDisk DiskOf(const Ray& ray) { return {kTestExtent, -ray.d}; }
+
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const Vec3 center = DiskOf(sample->ray).center;
+    sample->ray.o = center + (sample->ray.o - center) * kShare;
+    return sample;
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
+    const Vec3 center = DiskOf(ray).center;
+    const LePdf pdf = light_->Pdf_Le(Ray{center + (ray.o - center) * (1 / kShare), ray.d}, n);
+    return {pdf.position / static_cast<double>(kShare * kShare), pdf.direction};
+  }
+};
+
+/// The radius on the disk without its square root: rays crowd in the middle.
+class DiskWithoutRoot final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const EmissionDisk disk(kTestExtent, -sample->ray.d);
+    const float r = disk.radius * static_cast<float>(u.position.x), phi = 2 * kPi * static_cast<float>(u.position.y);
+    sample->ray.o = disk.center + (disk.frame.s * std::cos(phi) + disk.frame.t * std::sin(phi)) * r;
+    return sample;
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
+    const EmissionDisk disk(kTestExtent, -ray.d);
+    const double share = static_cast<double>(Length(Cross(ray.o - disk.center, ray.d)) / disk.radius);
+    const LePdf pdf = light_->Pdf_Le(ray, n);
+    return {pdf.position / (2 * std::max(share, 1e-6)), pdf.direction};
+  }
+};
+
+/// Directions even in theta, and a density that forgets the sine.
+class MissingSine final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    const std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const double theta = kPiD * u.direction.x, phi = 2 * kPiD * u.direction.y, s = std::sin(theta);
+    const Vec3 wi = ToFloat(Vec3d(s * std::cos(phi), s * std::sin(phi), std::cos(theta)));
+    LeSample faulty = *sample;
+    faulty.ray = Ray{EmissionDisk(kTestExtent, wi).Sample(u.position), -wi};
+    return faulty;
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
+    return {light_->Pdf_Le(ray, n).position, 1 / (2 * kPiD * kPiD)};
+  }
+};
+
+/// The rays of an environment run toward it.
+class ReversedRays final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+
+ protected:
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const Vec3 w = sample->ray.d;
+    sample->ray = Ray{EmissionDisk(kTestExtent, w).Sample(u.position), -w};
+    return sample;
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override { return light_->Pdf_Le(Ray{ray.o, -ray.d}, n); }
+};
+
+/// A spot light drawn uniformly over its whole cone, rim or not.
+class ForgottenRim final : public FaultyEmission {
+ public:
+  using FaultyEmission::FaultyEmission;
+  static constexpr double kWidth = 40;
+
+ protected:
+  static double OneMinusCosMax() { return 2 * Sqr(std::sin(Radians(kWidth) / 2)); }
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    std::optional<LeSample> sample = light_->Sample_Le(u);
+    if (!sample) return std::nullopt;
+    const Vec3d w = SampleCone(u.direction, OneMinusCosMax());
+    sample->ray = Ray{sample->ray.o, ToFloat(Vec3d(w.x, -w.y, -w.z))};
+    const auto arriving = light_->Sample_Li(LightContext(sample->ray(1)), {});
+    sample->Le = arriving ? arriving->L : Color();
+    return sample;
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3&) const override {
+    return {1, 1 + static_cast<double>(ray.d.z) <= OneMinusCosMax() ? ConePdf(OneMinusCosMax()) : 0};
+  }
+};
+
+/// Triangles chosen by number instead of by area.
+class ChosenByNumber final : public FaultyEmission {
+ public:
+  ChosenByNumber(std::unique_ptr<Light> light, Place place, const Shape* shape)
+      : FaultyEmission(std::move(light), place), shape_(shape) {
+    for (int i = 0; i < shape->PrimitiveCount(); ++i) area_ += shape->PrimitiveArea(i);
+  }
+
+ protected:
+  double AreaBefore(int end) const {
+    double sum = 0;
+    for (int i = 0; i < end; ++i) sum += shape_->PrimitiveArea(i);
+    return sum;
+  }
+  std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
+    LeRandom own = u;
+    const int count = shape_->PrimitiveCount(), chosen = std::min(static_cast<int>(u.part * count), count - 1);
+    own.part = (AreaBefore(chosen) + shape_->PrimitiveArea(chosen) / 2) / area_;
+    return light_->Sample_Le(own);
+  }
+  LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
+    const double part = light_->Invert_Le(ray, n).part * area_;
+    int chosen = 0;
+    while (chosen + 1 < shape_->PrimitiveCount() && AreaBefore(chosen + 1) <= part) ++chosen;
+    return {1 / (shape_->PrimitiveCount() * shape_->PrimitiveArea(chosen)), light_->Pdf_Le(ray, n).direction};
+  }
+
+ private:
+  const Shape* shape_;
+  double area_ = 0;
+};
+
+/// A sphere lamp of whose cone, as seen from a point, only nine tenths of the solid angle are drawn.
+class WrongCone final : public LightDecorator {
+ public:
+  using LightDecorator::LightDecorator;
+
+  std::optional<LiSample> Sample_Li(const LightContext& at, const LiRandom& u) const override {
+    LiRandom own = u;
+    if (SamplerIsFaulty()) own.direction.x *= kShare;
+    std::optional<LiSample> sample = light_->Sample_Li(at, own);
+    if (sample && DensityIsFaulty()) sample->pdf /= kShare;
+    return sample;
+  }
+  double Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override {
+    const double pdf = light_->Pdf_Li(at, wi, hit);
+    if (!DensityIsFaulty()) return pdf;
+    return light_->Invert_Li(at, wi, hit).direction.x < kShare ? pdf / kShare : 0;
+  }
+
+ private:
+  static constexpr double kShare = 0.9;
+};
+
+template <typename Faulty>
+Mutant OfLight(std::unique_ptr<Light> light, Place place) {
+  return {nullptr, std::make_unique<Faulty>(std::move(light), place)};
+}
+
+template <typename Faulty>
+Mutant OfDistant(Place place) {
+  return OfLight<Faulty>(std::make_unique<DistantLight>(Vec3(1, 2, -4), Color(3, 2, 1)), place);
+}
+
+template <typename Faulty>
+Mutant OfUniformEnvironment(Place place) {
+  return OfLight<Faulty>(std::make_unique<UniformEnvironmentLight>(Color(3, 2, 1)), place);
+}
+
+template <typename Faulty>
+Mutant OfSpot(Place place) {
+  return OfLight<Faulty>(std::make_unique<SpotLight>(Vec3(0.5f, 0, 2), Vec3(0, 0, -1), Color(3, 2, 1),
+                                                     ForgottenRim::kWidth, 10, SpotFalloff::PbrtV4),
+                         place);
+}
+
+template <typename Faulty, bool kTwoSided>
+Mutant OfDisk(Place place) {
+  const Transform transform = Transform::Translate({0.5, 0.25, 2}) * Transform::Rotate(150, {1, 0.2, 0});
+  auto shape = std::make_unique<Disk>(transform, false, 0, 0.75, 0, 360);
+  auto light = std::make_unique<AreaLight>(shape.get(), Color(3, 2, 1), kTwoSided);
+  return {std::move(shape), std::make_unique<Faulty>(std::move(light), place)};
+}
+
+Mutant OfSphere(Place place) {
+  auto shape = std::make_unique<Sphere>(Transform::Translate({0.5, 0.25, 2}), false, 0.5);
+  auto light = std::make_unique<AreaLight>(shape.get(), Color(3, 2, 1), false);
+  return {std::move(shape), std::make_unique<WrongCone>(std::move(light), place)};
+}
+
+Mutant OfMesh(Place place) {
+  auto shape =
+      std::make_unique<TriangleMesh>(std::vector<Vec3>{{0, 0, 2}, {0, 1, 2}, {1, 0, 2}, {-2, -2, 2}},
+                                     std::vector<Vec3>{}, std::vector<Vec2>{}, std::vector<int>{0, 1, 2, 0, 2, 3});
+  auto light = std::make_unique<AreaLight>(shape.get(), Color(3, 2, 1), false);
+  auto faulty = std::make_unique<ChosenByNumber>(std::move(light), place, shape.get());
+  return {std::move(shape), std::move(faulty)};
+}
+
+constexpr const char *kLi = "chi-square of Sample_Li", *kOrigin = "chi-square of origins",
+                     *kDirection = "chi-square of directions", *kEnergy = "energy", *kSides = "both sides",
+                     *kLookup = "lookup";
+
+}  // namespace
+
+const std::vector<Fault>& AllFaults() {
+  constexpr double kMap = 2.5, kEven = 1 + 1e-4;
+  static const std::vector<Fault> faults = {
+      {"half-texel shift", OfMap<HalfTexelShift>, {kLi, kLi, kLookup}, kMap},
+      {"map's rows from the other pole", OfMap<FlippedRows>, {kLi, kLi, kLookup}, kMap},
+      {"map's axes swapped", OfMap<SwappedAxes>, {kLi, kLi, kLookup}, kMap},
+      {"environment's rays reversed", OfMap<ReversedRays>, {kDirection, kDirection, kSides}, kMap},
+      {"missing sine", OfUniformEnvironment<MissingSine>, {kDirection, kDirection, kDirection}, kEven},
+      {"wrong cone constant", OfSphere, {kLi, kLi, kSides}, kEven},
+      {"flipped normal", OfDisk<FlippedNormal, false>, {kDirection, kDirection, kSides}, kEven},
+      {"missing cosine", OfDisk<MissingCosine, false>, {kDirection, kDirection, kLookup}, kEven},
+      {"factor 2 on a two-sided light", OfDisk<FactorTwo, true>, {kDirection, kDirection, kEnergy}, kEven},
+      {"wrong disk area", OfDistant<WrongDiskArea>, {kOrigin, kOrigin, kEnergy}, kEven},
+      {"disk without its square root", OfDistant<DiskWithoutRoot>, {kOrigin, kOrigin, kLookup}, kEven},
+      {"spot's rim forgotten", OfSpot<ForgottenRim>, {kDirection, kDirection, kLookup}, kEven},
+      {"triangles chosen by number", OfMesh, {kOrigin, kOrigin, kLookup}, kEven},
+  };
+  return faults;
+}
+
+}  // namespace dapple
