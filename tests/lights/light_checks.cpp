@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "lights/emission_disk.h"
 #include "src/base/numerics.h"
 #include "src/sampling/warps.h"
 #include "tests/support/chi_square.h"
@@ -94,10 +93,9 @@ class RayDomain {
 
   std::optional<Coordinates<3>> OriginOf(const LeSample& sample) const {
     if (tested_.shape) return SurfaceDomain(*tested_.shape).CoordinatesOf(sample.ray.o);
-    const EmissionDisk disk(kTestExtent, -sample.ray.d);
-    const Vec3d offset = (ToDouble(sample.ray.o) - ToDouble(disk.center)) / static_cast<double>(disk.radius);
-    const auto x =
-        DiskDomain::CoordinatesOf({Dot(offset, ToDouble(disk.frame.s)), Dot(offset, ToDouble(disk.frame.t))});
+    const EmissionDisk disk = DiskAcross(-sample.ray.d);
+    const Vec3d offset = (ToDouble(sample.ray.o) - disk.center) / disk.radius;
+    const auto x = DiskDomain::CoordinatesOf({Dot(offset, disk.s), Dot(offset, disk.t)});
     if (!x) return std::nullopt;
     return Coordinates<3>{0.5, (*x)[0], (*x)[1]};
   }
@@ -121,10 +119,10 @@ class RayDomain {
     Vec3 o = one_.ray.o;
     double originMeasure = 1;
     if (!HasDiscreteOrigin()) {
-      const EmissionDisk disk(kTestExtent, -d);
+      const EmissionDisk disk = DiskAcross(-d);
       const Vec2d p = DiskDomain::Point(origin[1], origin[2]);
-      o = disk.center + (disk.frame.s * static_cast<float>(p.x) + disk.frame.t * static_cast<float>(p.y)) * disk.radius;
-      originMeasure = disk.area;
+      o = ToFloat(disk.center + (disk.s * p.x + disk.t * p.y) * disk.radius);
+      originMeasure = disk.Area();
     }
     const LePdf pdf = tested_.light.Pdf_Le(Ray{o, d}, Vec3(0));
     return {pdf.position * originMeasure, pdf.direction * (HasDiscreteDirection() ? 1 : cone_.SolidAngle())};
@@ -206,7 +204,7 @@ double EmissionByQuadrature(const TestedLight& tested, double tolerance) {
     const auto intensity = [&](const Vec3d& w) { return arriving(ToFloat(origin + w * kDistance)) * Sqr(kDistance); };
     return IntegrateCone(rays.Cone(), intensity, tolerance);
   }
-  const auto area = [](const Vec3& w) { return EmissionDisk(kTestExtent, w).area; };
+  const auto area = [](const Vec3& w) { return DiskAcross(w).Area(); };
   if (rays.HasDiscreteDirection()) return arriving(kTestExtent.center) * area(-rays.One().ray.d);
   const auto throughDisk = [&](const Vec3d& w) {
     const Vec3 direction = ToFloat(w);
@@ -282,6 +280,11 @@ Verdict LookUpDirections(const TestedLight& tested, const LightContext& at, bool
 }
 
 }  // namespace
+
+EmissionDisk DiskAcross(const Vec3& w) {
+  static const EmissionDisks disks(kTestExtent);
+  return disks.Toward(w);
+}
 
 std::vector<LightContext> TestContexts() {
   return {LightContext({0, 0, 0}), LightContext({0.1f, 0.2f, 0}, {0, 0, 1}, false), LightContext({0.6f, 0.3f, 1.9f}),

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "lights/emission_disk.h"
 #include "src/base/frame.h"
 #include "tests/lights/light_cases.h"
 
@@ -23,6 +24,9 @@ struct TestedLight {
   const Light& light;
   const Shape* shape;
 };
+
+/// The disk from which light of infinitely far away arrives from the unit direction `w` in the extent of all cases.
+EmissionDisk DiskAcross(const Vec3& w);
 
 /// Points that see the lights of `AllLights` from near, from far, from behind and edge-on.
 std::vector<LightContext> TestContexts();

@@ -4,7 +4,6 @@
 
 #include "lights/area_light.h"
 #include "lights/distant_light.h"
-#include "lights/emission_disk.h"
 #include "lights/environment_light.h"
 #include "lights/spot_light.h"
 #include "src/base/numerics.h"
@@ -40,7 +39,7 @@ class BentEnvironment : public LightDecorator {
     if (!sample) return std::nullopt;
     if (SamplerIsFaulty()) {
       const Vec3 wi = Bend(-sample->ray.d);
-      sample->ray = Ray{EmissionDisk(kTestExtent, wi).Sample(u.position), -wi};
+      sample->ray = Ray{DiskAcross(wi).Sample(u.position), -wi};
     }
     sample->Le = light_->Le(Ray{Vec3(0), -sample->ray.d});
     const LePdf pdf = Pdf_Le(sample->ray, sample->n);
@@ -186,17 +185,17 @@ class WrongDiskArea final : public FaultyEmission {
 
  protected:
   static constexpr float kShare = 0.9f;
-  static EmissionDisk DiskOf(const Ray& ray) { return {kTestExtent, -ray.d}; }
+  static Vec3 CenterOf(const Ray& ray) { return ToFloat(DiskAcross(-ray.d).center); }
 
   std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
     std::optional<LeSample> sample = light_->Sample_Le(u);
     if (!sample) return std::nullopt;
-    const Vec3 center = DiskOf(sample->ray).center;
+    const Vec3 center = CenterOf(sample->ray);
     sample->ray.o = center + (sample->ray.o - center) * kShare;
     return sample;
   }
   LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
-    const Vec3 center = DiskOf(ray).center;
+    const Vec3 center = CenterOf(ray);
     const LePdf pdf = light_->Pdf_Le(Ray{center + (ray.o - center) * (1 / kShare), ray.d}, n);
     return {pdf.position / static_cast<double>(kShare * kShare), pdf.direction};
   }
@@ -211,14 +210,14 @@ class DiskWithoutRoot final : public FaultyEmission {
   std::optional<LeSample> FaultyDraw(const LeRandom& u) const override {
     std::optional<LeSample> sample = light_->Sample_Le(u);
     if (!sample) return std::nullopt;
-    const EmissionDisk disk(kTestExtent, -sample->ray.d);
-    const float r = disk.radius * static_cast<float>(u.position.x), phi = 2 * kPi * static_cast<float>(u.position.y);
-    sample->ray.o = disk.center + (disk.frame.s * std::cos(phi) + disk.frame.t * std::sin(phi)) * r;
+    const EmissionDisk disk = DiskAcross(-sample->ray.d);
+    const double r = disk.radius * u.position.x, phi = 2 * kPiD * u.position.y;
+    sample->ray.o = ToFloat(disk.center + (disk.s * std::cos(phi) + disk.t * std::sin(phi)) * r);
     return sample;
   }
   LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
-    const EmissionDisk disk(kTestExtent, -ray.d);
-    const double share = static_cast<double>(Length(Cross(ray.o - disk.center, ray.d)) / disk.radius);
+    const EmissionDisk disk = DiskAcross(-ray.d);
+    const double share = Length(Cross(ToDouble(ray.o) - disk.center, ToDouble(ray.d))) / disk.radius;
     const LePdf pdf = light_->Pdf_Le(ray, n);
     return {pdf.position / (2 * std::max(share, 1e-6)), pdf.direction};
   }
@@ -236,7 +235,7 @@ class MissingSine final : public FaultyEmission {
     const double theta = kPiD * u.direction.x, phi = 2 * kPiD * u.direction.y, s = std::sin(theta);
     const Vec3 wi = ToFloat(Vec3d(s * std::cos(phi), s * std::sin(phi), std::cos(theta)));
     LeSample faulty = *sample;
-    faulty.ray = Ray{EmissionDisk(kTestExtent, wi).Sample(u.position), -wi};
+    faulty.ray = Ray{DiskAcross(wi).Sample(u.position), -wi};
     return faulty;
   }
   LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override {
@@ -254,7 +253,7 @@ class ReversedRays final : public FaultyEmission {
     std::optional<LeSample> sample = light_->Sample_Le(u);
     if (!sample) return std::nullopt;
     const Vec3 w = sample->ray.d;
-    sample->ray = Ray{EmissionDisk(kTestExtent, w).Sample(u.position), -w};
+    sample->ray = Ray{DiskAcross(w).Sample(u.position), -w};
     return sample;
   }
   LePdf FaultyDensity(const Ray& ray, const Vec3& n) const override { return light_->Pdf_Le(Ray{ray.o, -ray.d}, n); }

@@ -137,8 +137,8 @@ inline ChiSquare Finish(std::vector<double> probability, const std::vector<doubl
 template <int D, typename Sample, typename Density>
 ChiSquare ChiSquareOnCube(const Sample& sample, const Density& density, const std::array<int, D>& cells, int samples,
                           uint64_t seed) {
-  constexpr int kDepth = D <= 2 ? 12 : 10;
-  constexpr double kCountError = 0.2;
+  constexpr int kDepth = 10;
+  constexpr double kCountError = 0.5;
   size_t count = 1;
   for (const int n : cells) count *= static_cast<size_t>(n);
   std::vector<double> probability(count), observed(count + 1);
@@ -166,7 +166,7 @@ ChiSquare ChiSquareOnCube(const Sample& sample, const Density& density, const st
 template <typename Sample, typename Density>
 ChiSquare ChiSquareOnProduct(const Sample& sample, const Density& density, const std::array<int, 4>& cells, int samples,
                              uint64_t seed) {
-  constexpr double kNode = 0.577350269189625765 / 2, kCountError = 0.2;
+  constexpr double kNode = 0.577350269189625765 / 2, kCountError = 0.5;
   const auto [na, nb, nc, nd] = cells;
   std::vector<double> probability;
   // In the order of CellOf: the first coordinate runs fastest.
@@ -180,7 +180,7 @@ ChiSquare ChiSquareOnProduct(const Sample& sample, const Density& density, const
         const auto f = [&](const Coordinates<2>& x) {
           return density(Coordinates<4>{(a + atA) / na, (b + atB) / nb, x[0], x[1]});
         };
-        sum += Integrate<2>(f, cell, kCountError * na * nb / samples, 12) / (4 * na * nb);
+        sum += Integrate<2>(f, cell, kCountError * na * nb / samples, 10) / (4 * na * nb);
       }
     }
     probability.push_back(sum);
