@@ -131,7 +131,8 @@ std::optional<LiSample> AreaLight::Sample_Li(const LightContext& at, const LiRan
   const std::optional<ShapeSample> point = shape_->SampleSolidAngle(primitive.index, at.p, u.direction);
   if (!point || !(point->pdf > 0)) return std::nullopt;
   LiSample sample;
-  const Vec3d toLight = ToDouble(point->p) - ToDouble(at.p);
+  const bool isExact = LengthSquared(point->toPoint) > 0;
+  const Vec3d toLight = isExact ? point->toPoint : ToDouble(point->p) - ToDouble(at.p);
   if (LengthSquared(toLight) == 0) return std::nullopt;
   sample.wi = ToFloat(Normalize(toLight));
   if (!twoSided_ && Dot(point->n, sample.wi) >= 0) return std::nullopt;

@@ -23,6 +23,9 @@ struct ShapeSample {
   Vec3 n{0};         ///< unit geometric normal on the outside, as SurfaceInteraction::ng
   Vec2 uv{0};
   double pdf = 0;
+  /// From the reference to the point, before that was rounded to float: very near a shape, rounding would turn the
+  /// direction. Zero: `p` knows no better.
+  Vec3d toPoint{0, 0, 0};
 };
 
 /// Where a ray meets a primitive, before shading needs more of it.

@@ -195,7 +195,9 @@ std::optional<ShapeSample> Sphere::SampleSolidAngle(int primitive, const Vec3& r
   if (!isWhole_ || !(Length(from) > radius_)) return Quadric::SampleSolidAngle(primitive, reference, u);
   const Cone cone(from, radius_);
   const Vec3d p = cone.Sample(u);
-  return SampleAt(p, SolidAngleShrink(p - from) / cone.SolidAngle());
+  ShapeSample sample = SampleAt(p, SolidAngleShrink(p - from) / cone.SolidAngle());
+  sample.toPoint = ToRender(p) - ToDouble(reference);
+  return sample;
 }
 
 double Sphere::PdfSolidAngle(int primitive, const Vec3& reference, const Vec3& p, const Vec3& n) const {

@@ -1,0 +1,145 @@
+// Lights at the limits: answers in closed form, relative errors below 1e-5.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "lights/area_light.h"
+#include "lights/distant_light.h"
+#include "lights/environment_light.h"
+#include "lights/point_light.h"
+#include "src/base/numerics.h"
+#include "src/geometry/sphere.h"
+#include "src/geometry/triangle_mesh.h"
+#include "tests/lights/light_cases.h"
+
+namespace dapple {
+namespace {
+
+constexpr double kRelativeError = 1e-5;
+
+/// The irradiance at `at` by the midpoint rule over the light's own random numbers.
+double IrradianceByMidpoints(const Light& light, const LightContext& at, int rows, int columns) {
+  double sum = 0;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      LiRandom u;
+      u.part = 0.5, u.direction = Vec2d((i + 0.5) / rows, (j + 0.5) / columns);
+      const std::optional<LiSample> sample = light.Sample_Li(at, u);
+      if (!sample) continue;
+      const double cosTheta = std::max(0.0, Dot(ToDouble(sample->wi), ToDouble(at.n)));
+      sum += static_cast<double>(sample->L.r) * cosTheta / sample->pdf / (rows * columns);
+    }
+  }
+  return sum;
+}
+
+// Facing a sphere of radius 1 at distance d from its centre, the irradiance is pi L / d^2; the cosine is linear in the
+// random number, so that midpoints give it exactly.
+TEST(LightStress, SphereFromAMillionthToAMillionRadiiAway) {
+  const Sphere sphere(Transform(), false, 1);
+  const AreaLight light(&sphere, Color(2), false);
+  for (const double height : {1e-6, 1e-5, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6}) {
+    const auto z = static_cast<float>(1 + height);
+    const double truth = 2 * kPiD / Sqr(static_cast<double>(z));
+    const double estimate = IrradianceByMidpoints(light, LightContext(Vec3(0, 0, z), Vec3(0, 0, -1), false), 64, 4);
+    EXPECT_NEAR(estimate / truth, 1, kRelativeError) << height;
+  }
+}
+
+// Of a ball of any size the same, and of a scene that is scaled with it.
+TEST(LightStress, SpheresOfAllSizes) {
+  for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+    const Sphere sphere(Transform::Scale(Vec3d(scale)), false, 1);
+    const AreaLight light(&sphere, Color(2), false);
+    const auto z = static_cast<float>(3 * scale);
+    const double estimate = IrradianceByMidpoints(light, LightContext(Vec3(0, 0, z), Vec3(0, 0, -1), false), 64, 4);
+    EXPECT_NEAR(estimate / (2 * kPiD / 9), 1, kRelativeError) << scale;
+    EXPECT_NEAR(light.Area() / (4 * kPiD * scale * scale), 1, kRelativeError) << scale;
+  }
+}
+
+TEST(LightStress, PointFromNearToFar) {
+  const PointLight light(Vec3(0), Color(3));
+  for (const float distance : {1e-6f, 1e-3f, 1.f, 1e3f, 1e6f, 1e10f}) {
+    const auto sample = light.Sample_Li(LightContext(Vec3(0, distance, 0)), {});
+    ASSERT_TRUE(sample);
+    EXPECT_NEAR(static_cast<double>(sample->L.g) * Sqr(static_cast<double>(distance)) / 3, 1, kRelativeError);
+    EXPECT_EQ(sample->wi, Vec3(0, -1, 0));
+  }
+}
+
+TEST(LightStress, LightsAtInfinityInScenesOfAllSizes) {
+  for (const double radius : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+    const double area = kPiD * radius * radius;
+    DistantLight distant(Vec3(1, 2, -4), Color(3));
+    UniformEnvironmentLight uniform(Color(2));
+    EnvironmentLight map(RandomEnvironment(16, 8, 1), Transform(), Color(1), EnvironmentMapping::LatLong);
+    for (Light* light : {static_cast<Light*>(&distant), static_cast<Light*>(&uniform), static_cast<Light*>(&map)}) {
+      light->Prepare({Vec3(static_cast<float>(radius), 0, 0), static_cast<float>(radius)});
+      RandomNumbers random(5);
+      for (int i = 0; i < 100; ++i) {
+        const auto sample = light->Sample_Le(random.Le());
+        if (!sample) continue;
+        ASSERT_NEAR(sample->pdfPos * area, 1, kRelativeError) << radius;
+        ASSERT_EQ(light->Pdf_Le(sample->ray, sample->n).position, sample->pdfPos) << radius;
+      }
+    }
+    EXPECT_NEAR(static_cast<double>(distant.Power().g) / (3 * area), 1, kRelativeError) << radius;
+    EXPECT_NEAR(static_cast<double>(uniform.Power().g) / (2 * 4 * kPiD * area), 1, kRelativeError) << radius;
+    EXPECT_NEAR(static_cast<double>(map.Power().g) / (static_cast<double>(map.Map().Integral().g) * area), 1,
+                kRelativeError)
+        << radius;
+  }
+}
+
+// A needle of 1 x 1e-6 at distance 2 above the receiver: it is so narrow that the irradiance is a line's, the integral
+// of cos^2 / d^2 along it, = h^2 / (h^2 + x^2)^2 from x = 0 to 1, weighted by the width, which falls from 1 to 0.
+TEST(LightStress, NeedleTriangle) {
+  constexpr double kWidth = 1e-6, kHeight = 2;
+  const auto h = static_cast<float>(kHeight);
+  const TriangleMesh needle({{0, 0, h}, {0, static_cast<float>(kWidth), h}, {1, 0, h}}, {}, {}, {0, 1, 2});
+  const AreaLight light(&needle, Color(1), false);
+  EXPECT_NEAR(light.Area() / (kWidth / 2), 1, kRelativeError);
+  double truth = 0;
+  constexpr int kSteps = 10000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = (i + 0.5) / kSteps;
+    truth += kWidth * (1 - x) * Sqr(kHeight) / Sqr(Sqr(kHeight) + x * x) / kSteps;
+  }
+  const LightContext at(Vec3(0), Vec3(0, 0, 1), false);
+  EXPECT_NEAR(IrradianceByMidpoints(light, at, 512, 512) / truth, 1, kRelativeError);
+}
+
+// One bright texel of a map of any shape, at the poles, alone or beside black rows: all that is drawn is of it, and the
+// mean of L / pdf is the integral of the lookup.
+TEST(LightStress, MapsWithOneBrightTexel) {
+  struct Case {
+    int width, height, x, y;
+  };
+  for (const Case& c : {Case{1, 1, 0, 0},
+                        {2, 1, 1, 0},
+                        {1, 2, 0, 1},
+                        {64, 32, 5, 0},
+                        {64, 32, 60, 31},
+                        {64, 32, 0, 16},
+                        {63, 31, 62, 7}}) {
+    Image image = Image::Rgb(c.width, c.height);
+    image.SetColor(c.x, c.y, Color(1e4f));
+    const EnvironmentMap map(image, EnvironmentMapping::LatLong, Color(1));
+    double mean = 0;
+    constexpr int kPoints = 512;
+    for (int i = 0; i < kPoints * kPoints; ++i) {
+      const Vec2d u((i % kPoints + 0.5) / kPoints, (i / kPoints + 0.5) / kPoints);
+      const EnvironmentValue value = map.Evaluate(map.Sample(u));
+      ASSERT_GT(value.pdf, 0);
+      mean += static_cast<double>(value.L.g) / value.pdf / (kPoints * kPoints);
+    }
+    // Radiance and density differ in shape within cells next to the poles: there the midpoint rule has an error.
+    const bool isAtPole = c.height <= 2 || c.y == 0 || c.y == c.height - 1;
+    EXPECT_NEAR(mean / static_cast<double>(map.Integral().g), 1, isAtPole ? 1e-3 : 2e-5) << c.width << " " << c.y;
+  }
+}
+
+}  // namespace
+}  // namespace dapple
