@@ -8,13 +8,15 @@ namespace dapple {
 
 EnvironmentLight::EnvironmentLight(const Image& image, const Transform& lightToRender, const Color& scale,
                                    Mapping mapping, const EnvironmentOptions& options)
-    : map_(image, mapping, scale), options_(options), frame_(lightToRender) {}
+    : map_(image, mapping, scale), options_(options), frame_(lightToRender) {
+  SetSampleCount(options.samples);
+  if (!map_.IsBlack()) strategy_ = MakeStrategy(options.sampling, {this, map_, frame_});
+}
 
 void EnvironmentLight::Prepare(const SceneExtent& extent) {
   extent_ = {extent.center, extent.radius};
   disks_ = EmissionDisks(extent);
   power_ = map_.IntegralTimes([this](const Vec3d& w) { return disks_.Area(ToDouble(ToRender(w))); });
-  if (!map_.IsBlack()) strategy_ = MakeStrategy(options_.sampling, {this, map_, frame_});
 }
 
 double EnvironmentLight::ImportanceAt(const LightContext&) const {

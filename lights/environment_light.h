@@ -24,6 +24,7 @@ enum class EnvironmentEmission {
 struct EnvironmentOptions {
   EnvironmentEmission emission = EnvironmentEmission::Importance;
   EnvironmentSampling sampling = EnvironmentSampling::Importance;  ///< of `Sample_Li`
+  int samples = 1;                                                 ///< `Light::SampleCount`
 };
 
 class EnvironmentLight final : public Light {

@@ -36,26 +36,43 @@ struct ProductStrategy::Tree final : ReceiverTable {
 ProductStrategy::ProductStrategy(const EnvironmentSpace& space) : space_(space) {
   const Vec2i cells = space.map.Cells();
   pyramid_ = WeightPyramid(space.map.CellWeights(0), cells.x, cells.y);
-  const int top = pyramid_.Root().level;
-  coarse_ = top;
+  coarse_ = pyramid_.Root().level;
   while (coarse_ > 0 && std::max(pyramid_.Size(coarse_).x, pyramid_.Size(coarse_).y) < kCoarseNodes) --coarse_;
   while (pyramid_.Size(finest_).x * int64_t{pyramid_.Size(finest_).y} > kMostDirections) ++finest_;
-  for (int level = finest_; level <= top; ++level) {
-    const Vec2i size = pyramid_.Size(level);
-    const int side = 1 << level;
-    std::vector<Vec3>& directions = directions_.emplace_back();
-    const auto middle = [side](int node, int end) { return (node * side + std::min((node + 1) * side, end)) / 2.0; };
-    for (int y = 0; y < size.y; ++y) {
-      for (int x = 0; x < size.x; ++x) {
-        const Vec2d at(middle(x, cells.x), middle(y, cells.y));
-        const Vec2i cell(static_cast<int>(at.x), static_cast<int>(at.y));
-        directions.push_back(space.frame.ToRender(space.map.DirectionOf(cell, {at.x - cell.x, at.y - cell.y})));
-      }
+  FillDirections();
+}
+
+void ProductStrategy::FillDirections() {
+  const auto indexOf = [this](int level, int x, int y) {
+    return static_cast<size_t>(y) * static_cast<size_t>(pyramid_.Size(level).x) + static_cast<size_t>(x);
+  };
+  const auto countOf = [this](int level) {
+    return static_cast<size_t>(pyramid_.Size(level).x) * static_cast<size_t>(pyramid_.Size(level).y);
+  };
+  std::vector<Vec3d> sums(countOf(finest_), Vec3d(0));
+  const Vec2i cells = space_.map.Cells();
+  for (int y = 0; y < cells.y; ++y) {
+    for (int x = 0; x < cells.x; ++x) {
+      const double light = pyramid_.Weight({0, {x, y}});
+      if (light > 0)
+        sums[indexOf(finest_, x >> finest_, y >> finest_)] +=
+            space_.map.DirectionOf({x, y}, space_.map.SampleInCell({x, y}, Vec2d(0.5))) * light;
     }
+  }
+  for (int level = finest_;; ++level) {
+    std::vector<Vec3>& directions = directions_.emplace_back();
+    for (const Vec3d& sum : sums)
+      directions.push_back(space_.frame.ToRender(LengthSquared(sum) > 0 ? Normalize(sum) : Vec3d(0, 0, 1)));
+    if (level == pyramid_.Root().level) return;
+    std::vector<Vec3d> above(countOf(level + 1), Vec3d(0));
+    for (int y = 0; y < pyramid_.Size(level).y; ++y)
+      for (int x = 0; x < pyramid_.Size(level).x; ++x)
+        above[indexOf(level + 1, x / 2, y / 2)] += sums[indexOf(level, x, y)];
+    sums = std::move(above);
   }
 }
 
-const Vec3& ProductStrategy::MiddleOf(const PyramidNode& node) const {
+const Vec3& ProductStrategy::CentroidOf(const PyramidNode& node) const {
   return directions_[static_cast<size_t>(node.level - finest_)]
                     [static_cast<size_t>(node.at.y) * static_cast<size_t>(pyramid_.Size(node.level).x) +
                      static_cast<size_t>(node.at.x)];
@@ -65,6 +82,18 @@ const ProductStrategy::Tree* ProductStrategy::TreeOf(const LightContext& at) con
   return static_cast<const Tree*>(at.TableOf(space_.light));
 }
 
+double ProductStrategy::MeanScattering(const PyramidNode& node, const Bsdf& bsdf, const Vec3& wo) const {
+  if (node.level <= finest_) return ScatteringToward(bsdf, wo, CentroidOf(node));
+  double sum = 0, light = 0;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const PyramidNode part = node.Child(quarter);
+    const double weight = pyramid_.Weight(part);
+    if (weight > 0) sum += weight * ScatteringToward(bsdf, wo, CentroidOf(part));
+    light += weight;
+  }
+  return sum / light;
+}
+
 void ProductStrategy::Split(int index, const Bsdf& bsdf, const Vec3& wo, std::vector<Node>* nodes) const {
   const Node parent = (*nodes)[static_cast<size_t>(index)];
   (*nodes)[static_cast<size_t>(index)].firstChild = static_cast<int>(nodes->size());
@@ -72,8 +101,7 @@ void ProductStrategy::Split(int index, const Bsdf& bsdf, const Vec3& wo, std::ve
     Node child{.place = parent.place.Child(quarter)};
     const double light = pyramid_.Weight(child.place);
     if (light > 0) {
-      child.scattering =
-          std::max(ScatteringToward(bsdf, wo, MiddleOf(child.place)), parent.scattering * kLeastOfParent);
+      child.scattering = std::max(MeanScattering(child.place, bsdf, wo), parent.scattering * kLeastOfParent);
       child.weight = light * child.scattering;
     }
     nodes->push_back(child);

@@ -112,9 +112,20 @@ EnvironmentMapping MappingOf(const BuildContext& context) {
   return context.IsV3() ? EnvironmentMapping::LatLong : EnvironmentMapping::EqualArea;
 }
 
-/// Dapple's own parameters of infinite lights.
+/// Next-event samples of an infinite light, as pbrt-v3 spells them.
+int GetSampleCount(const LightDescription& light) {
+  const char* const name = light.params.Has("samples") ? "samples" : "nsamples";
+  const int count = light.params.GetInt(name, 1);
+  if (count < 1)
+    throw Error(light.params.LocationOf(name, light.location),
+                fmt::format("parameter \"{}\" is {}, expected 1 or more", name, count));
+  return count;
+}
+
+/// How an infinite light is sampled: mostly Dapple's own parameters.
 EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
   EnvironmentOptions options;
+  options.samples = GetSampleCount(light);
   const std::string emission = light.params.GetString("emission", "importance");
   if (emission == "uniform") {
     options.emission = EnvironmentEmission::Uniform;
@@ -152,16 +163,6 @@ std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescriptio
                                             MappingOf(context), options);
 }
 
-/// Next-event samples of an infinite light, as pbrt-v3 spells them.
-int GetSampleCount(const LightDescription& light) {
-  const char* const name = light.params.Has("samples") ? "samples" : "nsamples";
-  const int count = light.params.GetInt(name, 1);
-  if (count < 1)
-    throw Error(light.params.LocationOf(name, light.location),
-                fmt::format("parameter \"{}\" is {}, expected 1 or more", name, count));
-  return count;
-}
-
 std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& light) {
   const BuildContext& context = values.Context();
   if (const Parameter* portal = light.params.Find("portal"))
@@ -175,7 +176,11 @@ std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& lig
   }
   const Color L = GetEmission(values, light, "L") * TargetFactor(context, light, "illuminance", kPiD);
   // The same from everywhere: both ways to emit are one.
-  if (!light.params.Has("sampling")) return std::make_unique<UniformEnvironmentLight>(L);
+  if (!light.params.Has("sampling")) {
+    auto uniform = std::make_unique<UniformEnvironmentLight>(L);
+    uniform->SetSampleCount(options.samples);
+    return uniform;
+  }
   return std::make_unique<EnvironmentLight>(WhitePixel(), Transform(), L, MappingOf(context), options);
 }
 
@@ -274,7 +279,6 @@ ShapeArea AreaOf(const Shape& shape) {
 
 std::unique_ptr<Light> BuildLight(Values& values, const LightDescription& light) {
   std::unique_ptr<Light> result = BuildKnownLight(values, light);
-  if (result->IsInfinite()) result->SetSampleCount(GetSampleCount(light));
   light.params.ReportUnused(values.Context().diagnostics, {"nsamples", "samples"});
   return result;
 }

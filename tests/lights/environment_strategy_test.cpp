@@ -82,7 +82,6 @@ std::unique_ptr<EnvironmentLight> MakeLight(const Map& map, EnvironmentSampling 
                                             const Transform& transform = {}) {
   auto light = std::make_unique<EnvironmentLight>(map.image, transform, Color(1), map.mapping,
                                                   EnvironmentOptions{.sampling = sampling});
-  light->Prepare(kTestExtent);
   return light;
 }
 
@@ -407,6 +406,30 @@ TEST(EnvironmentStrategy, ProductWastesLittleWhereMapOrBsdfAloneWasteMuch) {
     const double byProduct = Waste(*product, receiver, bsdf), byMap = Waste(*importance, receiver, bsdf);
     EXPECT_LT(byProduct - 1, 0.5 * (byMap - 1)) << receiver.name << ": " << byProduct << " against " << byMap;
   }
+}
+
+// However low the sun stands, if only it is above the horizon as a whole (its tent reaches 4 degrees, at its corners),
+// the tree finds it: no weight grows far beyond its due.
+TEST(EnvironmentStrategy, ProductFindsASunAtAnyHeight) {
+  Image image = Filled(128, 64, 0.01f);
+  image.SetColor(40, 21, Color(3000));
+  const auto product = MakeLight({"low sun", image}, EnvironmentSampling::Product);
+  const Vec3 sun = product->Sample_Li(LightContext(Vec3(0)), {0.5, {0.5, 0.5}})->wi;
+  RandomNumbers random(11);
+  double worst = 1;
+  for (int i = 0; i < 200; ++i) {
+    Receiver receiver = Receivers()[0];
+    const double height = 0.07 + 0.2 * random.Get1D(), turn = 2 * kPiD * random.Get1D();
+    const Vec3d local(std::sqrt(1 - height * height) * std::cos(turn), std::sqrt(1 - height * height) * std::sin(turn),
+                      height);
+    receiver.n = receiver.wo = Normalize(Frame::FromZ(sun).ToWorld(ToFloat(local)));
+    const Bsdf bsdf = receiver.MakeBsdf();
+    const LightContext at = receiver.ContextFor(*product, bsdf);
+    // The density at the sun against the ideal one, the product over its integral.
+    const double irradiance = 3000 * 2 * kPiD / 128 * (kPiD / 64) * std::sin(kPiD * 21.5 / 64) * height + 0.01 * kPiD;
+    worst = std::min(worst, product->Pdf_Li(at, sun, nullptr) / (3000 * height / irradiance));
+  }
+  EXPECT_GT(worst, 0.25);
 }
 
 // Where the sun is below a surface that light does not cross, hardly any draws of the product go there.
