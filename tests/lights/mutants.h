@@ -1,6 +1,8 @@
-// Lights with a fault planted in them, for the mutation suite: in the sampler, in the density, or in both.
+// Lights, and what lights are drawn with, with a fault planted in them, for the mutation suite: in the sampler, in the
+// density, or in both.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,20 +50,24 @@ class LightDecorator : public Light {
   Place place_;
 };
 
-/// A light under test, with the shape that it shines from.
-struct Mutant {
-  std::unique_ptr<Shape> shape;
-  std::unique_ptr<Light> light;
-};
+/// The names of the checks that reject something.
+using Rejections = std::vector<std::string>;
 
-/// A fault, the light that it is planted in, and the checks that must reject it, one for each place.
+/// A fault, what it is rejected by where it is planted, and the checks that must be among those, one for each place.
 struct Fault {
   std::string name;
-  Mutant (*make)(Place place);
+  std::function<Rejections(Place)> rejections;
   const char* rejectedBy[3];  ///< in the sampler, in the density, in both
-  double spread;              ///< of `CheckLookup`, for the light without fault
 };
 
-const std::vector<Fault>& AllFaults();
+std::vector<Fault> FaultsOfLights();
+/// Of the choice of a light, of tables and of a BSDF.
+std::vector<Fault> FaultsOfParts();
+
+inline std::vector<Fault> AllFaults() {
+  std::vector<Fault> faults = FaultsOfLights();
+  for (Fault& fault : FaultsOfParts()) faults.push_back(std::move(fault));
+  return faults;
+}
 
 }  // namespace dapple
