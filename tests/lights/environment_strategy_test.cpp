@@ -11,7 +11,7 @@
 #include "src/base/numerics.h"
 #include "src/materials/bsdf.h"
 #include "src/sampling/warps.h"
-#include "tests/lights/light_cases.h"
+#include "tests/lights/light_checks.h"
 #include "tests/support/chi_square.h"
 
 namespace dapple {
@@ -338,6 +338,21 @@ TEST(EnvironmentStrategy, ScatteredRadianceIsUnbiased) {
             << name << (bsdfDrawsToo ? ", MIS" : "");
       }
     });
+  }
+}
+
+// Irradiance by each strategy against the photons of the same light.
+TEST(EnvironmentStrategy, BothSidesGiveTheSameLightOnAPatch) {
+  const Receiver matte = Receivers().front();
+  const Bsdf bsdf = matte.MakeBsdf();
+  const Patch patch{kTestExtent.center, Frame::FromZ(matte.n), 1.5f};
+  for (const Map& map : Maps()) {
+    for (const EnvironmentSampling sampling : kAllSamplings) {
+      const auto light = MakeLight(map, sampling);
+      light->Prepare(kTestExtent);
+      const Verdict verdict = CheckBothSides({*light, nullptr}, patch, matte.ContextFor(*light, bsdf));
+      EXPECT_TRUE(verdict.passes) << NameOf(sampling) << ", " << map.name << ": " << verdict.message;
+    }
   }
 }
 

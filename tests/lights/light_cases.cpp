@@ -66,18 +66,33 @@ void AddAreaLights(std::vector<LightCase>* cases) {
   const Transform place = Transform::Translate({0.5, 0.25, 2}) * Transform::Rotate(150, {1, 0.2, 0});
   add("sphere", std::make_unique<Sphere>(place, false, 0.5), false);
   add("sphere inside out", std::make_unique<Sphere>(place, true, 3), false);
-  add("ellipsoid", std::make_unique<Sphere>(place * Transform::Scale({1, 0.5, 0.25}), false, 0.75), false);
+  add("sphere, small and two-sided", std::make_unique<Sphere>(place, false, 0.01), true);
+  const auto ellipsoid = [&](const Vec3d& axes) {
+    return std::make_unique<Sphere>(place * Transform::Scale(axes), false, 0.75);
+  };
+  add("ellipsoid", ellipsoid({1, 0.5, 0.25}), false);
+  add("ellipsoid, long", ellipsoid({0.25, 0.25, 1}), false);
+  add("ellipsoid, flat and two-sided", ellipsoid({1, 1, 0.3}), true);
   add("disk", std::make_unique<Disk>(place, false, 0, 0.75, 0.25, 270), false);
   add("disk two-sided", std::make_unique<Disk>(place, false, 0, 0.75, 0, 360), true);
+  add("disk, small", std::make_unique<Disk>(place, true, 0.1, 0.05, 0, 360), false);
   add("cylinder", std::make_unique<Cylinder>(place, false, 0.25, -0.5, 0.75, 360), true);
+  add("cylinder, half and flat", std::make_unique<Cylinder>(place, false, 0.75, 0, 0.125, 180), false);
+  add("cylinder, tilted",
+      std::make_unique<Cylinder>(place * Transform::Rotate(70, {1, 0, 0}), true, 0.15, -0.5, 0.5, 360), true);
   add("triangles", Tent(), false);
   add("triangles two-sided", Tent(), true);
+  add("triangle, alone and textured",
+      std::make_unique<TriangleMesh>(std::vector<Vec3>{{0, 0, 2.25f}, {0.25f, 1, 2.5f}, {1, 0.25f, 2}},
+                                     std::vector<Vec3>{}, std::vector<Vec2>{}, std::vector<int>{0, 1, 2}),
+      true, true);
   const std::vector<Vec3> corners = {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {1.5f, 1.25f, 2}};
   const auto patch = [&] {
     return std::make_unique<BilinearMesh>(corners, std::vector<Vec3>{}, std::vector<Vec2>{},
                                           std::vector<int>{0, 1, 2, 3}, true);
   };
   add("bilinear", patch(), false);
+  add("bilinear two-sided", patch(), true);
   add("bilinear textured", patch(), true, true);
 }
 
@@ -115,6 +130,8 @@ std::vector<LightCase> AllLights() {
     cases.push_back({name, nullptr, std::move(light)});
   };
   add("point", std::make_unique<PointLight>(Vec3(1, 0, 2), Color(3, 2, 1)));
+  add("point, far out", std::make_unique<PointLight>(Vec3(-2, 2, 3), Color(0, 500, 2)));
+  add("point, near and faint", std::make_unique<PointLight>(Vec3(0.2f, 0, 0.5f), Color(1e-6f)));
   for (const SpotFalloff falloff : {SpotFalloff::PbrtV3, SpotFalloff::PbrtV4}) {
     const std::string version = falloff == SpotFalloff::PbrtV3 ? " v3" : " v4";
     for (const Vec2d& angles : {Vec2d(0.01, 0.005), Vec2d(30, 25), Vec2d(30, 0), Vec2d(30, 30), Vec2d(120, 80),
@@ -125,7 +142,11 @@ std::vector<LightCase> AllLights() {
     }
   }
   add("distant", std::make_unique<DistantLight>(Vec3(1, 2, -4), Color(3, 2, 1)));
+  add("distant, along an axis", std::make_unique<DistantLight>(Vec3(0, 0, -1), Color(1e-4f)));
+  add("distant, from below", std::make_unique<DistantLight>(Vec3(-3, 1, 0.5f), Color(0, 1e5f, 2)));
   add("uniform environment", std::make_unique<UniformEnvironmentLight>(Color(3, 2, 1)));
+  add("uniform environment, faint", std::make_unique<UniformEnvironmentLight>(Color(1e-6f)));
+  add("uniform environment, of a colour", std::make_unique<UniformEnvironmentLight>(Color(0, 1e5f, 2)));
   using Mapping = EnvironmentMapping;
   add("lat-long environment", std::make_unique<EnvironmentLight>(RandomEnvironment(16, 8, 1), SomeRotation(),
                                                                  Color(1, 0.5f, 2), Mapping::LatLong));

@@ -237,14 +237,17 @@ Mean FluxByRays(const TestedLight& tested, const Patch& patch) {
   return flux;
 }
 
-Mean FluxByDirections(const TestedLight& tested, const Patch& patch) {
+Mean FluxByDirections(const TestedLight& tested, const Patch& patch, const LightContext& receiver) {
   RandomNumbers random(19);
+  LightContext at = receiver;
+  at.n = patch.frame.n;
   Mean flux;
   const double area = kPiD * Sqr(static_cast<double>(patch.radius));
   for (int i = 0; i < kPatchSamples; ++i) {
     const Vec2d d = SampleDiskConcentric(random.Get2D()) * static_cast<double>(patch.radius);
     const Vec3 p = patch.center + patch.frame.s * static_cast<float>(d.x) + patch.frame.t * static_cast<float>(d.y);
-    const std::optional<LiSample> sample = tested.light.Sample_Li(LightContext(p, patch.frame.n, false), random.Li());
+    at.p = p;
+    const std::optional<LiSample> sample = tested.light.Sample_Li(at, random.Li());
     double irradiance = 0;
     if (sample) {
       const double cosTheta = std::max(0.0, Dot(ToDouble(sample->wi), ToDouble(patch.frame.n)));
@@ -387,8 +390,8 @@ std::vector<Patch> TestPatches(const TestedLight& tested) {
   return patches;
 }
 
-Verdict CheckBothSides(const TestedLight& tested, const Patch& patch) {
-  const Mean rays = FluxByRays(tested, patch), directions = FluxByDirections(tested, patch);
+Verdict CheckBothSides(const TestedLight& tested, const Patch& patch, const LightContext& receiver) {
+  const Mean rays = FluxByRays(tested, patch), directions = FluxByDirections(tested, patch, receiver);
   const double margin = Margin(std::hypot(rays.StandardError(), directions.StandardError()), rays.Value());
   return {std::abs(rays.Value() - directions.Value()) <= margin,
           fmt::format("flux by rays {}, by directions {}, margin {}", rays.Value(), directions.Value(), margin)};

@@ -57,8 +57,9 @@ struct Patch {
 std::vector<Patch> TestPatches(const TestedLight& tested);
 
 /// The irradiance by `Sample_Li`, taken over the patch, is the flux of `Sample_Le`'s rays through it, within five
-/// standard errors of their difference.
-Verdict CheckBothSides(const TestedLight& tested, const Patch& patch);
+/// standard errors of their difference. `receiver`: what `Sample_Li` is told but for point and normal.
+Verdict CheckBothSides(const TestedLight& tested, const Patch& patch,
+                       const LightContext& receiver = LightContext(Vec3(0)));
 
 /// Draws report the densities that `Pdf_Li` and `Pdf_Le` have for them, and the radiance that a ray which meets the
 /// light there looks up (not asked of textures, whose points round). The flux of no ray, in its largest component, is
