@@ -1,6 +1,7 @@
 #include "integrators/hybrid.h"
 
 #include "integrators/pixel_loop.h"
+#include "src/base/error.h"
 #include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
 #include "src/photons/same_surface.h"
@@ -39,6 +40,11 @@ double ContinueProbability(double pdf, double photons) {
 }
 
 }  // namespace
+
+HybridIntegrator::HybridIntegrator(const IntegratorOptions& options) : options_(options) {
+  if (options.direct.technique != DirectTechnique::Mis)
+    throw Error("integrator hybrid joins all techniques of direct light; expected mis, or integrator path or sppm");
+}
 
 void HybridIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;

@@ -20,7 +20,8 @@ namespace dapple {
 
 class HybridIntegrator final : public Integrator {
  public:
-  explicit HybridIntegrator(const IntegratorOptions& options) : options_(options) {}
+  /// Throws `Error` where direct light is to be found by one technique alone: here all are joined.
+  explicit HybridIntegrator(const IntegratorOptions& options);
 
   std::string_view Name() const override { return "hybrid"; }
   void Prepare(const Scene& scene, uint64_t seed) override;

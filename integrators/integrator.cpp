@@ -36,10 +36,10 @@ std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const Integrat
 IntegratorChoice SelectIntegrator(const SceneFacts& facts) {
   if (!facts.MayHaveCaustics()) return {"path", "no specular surface throws light on another one: no caustics"};
   if (facts.hasDeltaLight)
-    return {"sppm", "a specular surface and a light of no extent: paths cannot find its caustics"};
+    return {"hybrid", "a specular surface and a light of no extent: paths cannot find its caustics"};
   constexpr double kSmallShare = 0.05;
   if (facts.smallestLightShare < kSmallShare)
-    return {"sppm",
+    return {"hybrid",
             fmt::format("a specular surface and a light that covers {:.2g} of all directions: paths seldom find its "
                         "caustics",
                         facts.smallestLightShare)};

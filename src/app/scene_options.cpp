@@ -205,8 +205,10 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.choice = ResolveIntegrator(options.integrator, scene);
   if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
-  plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
-  plan.options.radius = Either(options.radius, settings.radius);
+  // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
+  const bool isScenes = plan.choice.name == "sppm";
+  plan.options.photonsPerPass = isScenes ? Either(options.photons, settings.photonsPerIteration) : options.photons;
+  plan.options.radius = isScenes ? Either(options.radius, settings.radius) : options.radius;
   plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);

@@ -7,7 +7,7 @@
 #include "src/base/hash.h"
 #include "src/base/parallel.h"
 #include "src/photons/light_path.h"
-#include "src/photons/photon_map.h"
+#include "src/photons/photon_forest.h"
 
 namespace dapple {
 
@@ -46,26 +46,22 @@ GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, 
 
 std::vector<float> GatherRadius::DensitiesAt(const std::vector<Vec3>& positions, double pathsOfPass) const {
   const double toPass = pathsOfPass / kPilotPaths;
-  // No more photons are counted than say how dense they are.
+  // So many photons, and the one in the middle, say how dense they are.
   constexpr size_t kCounted = 16;
-  const PhotonMap<char> map(positions, std::vector<char>(positions.size()));
+  std::vector<Vec3> points = positions;
+  const PhotonForest forest(std::move(points));
   std::vector<float> densities(positions.size());
   ParallelForChunks(static_cast<int64_t>(positions.size()), 1024, [&](int64_t begin, int64_t end) {
-    std::vector<float> distances;
+    std::vector<float> squared;
     for (int64_t i = begin; i < end; ++i) {
       const Vec3& p = positions[static_cast<size_t>(i)];
-      float radiusSquared = Sqr(Widest(p));
-      distances.clear();
-      map.ForEachWithin(p, Widest(p), [&](const Vec3&, char, float d2) { distances.push_back(d2); });
-      if (distances.size() > kCounted) {
-        const auto last = distances.begin() + kCounted;
-        std::nth_element(distances.begin(), last, distances.end());
-        radiusSquared = *last;
-        distances.resize(kCounted);
-      }
-      // The photon in the middle does not count; many in one place have no end of density.
-      const double area = kPiD * static_cast<double>(std::max(radiusSquared, Sqr(Widest(p)) * 1e-6f));
-      densities[static_cast<size_t>(i)] = static_cast<float>(static_cast<double>(distances.size() - 1) * toPass / area);
+      const float widest = Widest(p);
+      forest.FindNearest(p, widest, kCounted + 1, &squared);
+      // The outermost is on the rim, or none is. Many in one place have no end of density.
+      const float radiusSquared = squared.size() > kCounted ? squared.front() : Sqr(widest);
+      const double area = kPiD * static_cast<double>(std::max(radiusSquared, Sqr(widest) * 1e-6f));
+      const double inside = static_cast<double>(std::min(squared.size(), kCounted)) - 1;
+      densities[static_cast<size_t>(i)] = static_cast<float>(std::max(0.0, inside) * toPass / area);
     }
   });
   return densities;

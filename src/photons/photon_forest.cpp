@@ -28,6 +28,12 @@ PhotonForest::PhotonForest(std::vector<Vec3> positions, const Follower& follow, 
   BuildTrees(shape.leafSize, follow);
 }
 
+void PhotonForest::FindNearest(const Vec3& p, float radius, size_t most, std::vector<float>* squared) const {
+  squared->clear();
+  Nearest nearest{radius * radius, most, *squared};
+  Search(p, nearest);
+}
+
 void PhotonForest::SplitIntoBuckets(int levels, const Follower& follow) {
   struct Point {
     Vec3 p;

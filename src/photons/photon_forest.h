@@ -36,6 +36,10 @@ class PhotonForest {
   template <typename Visitor>
   void ForEachWithin(const Vec3& p, float radius, Visitor&& visit) const;
 
+  /// The squared distances from `p` to its nearest points, at most `most` of them and all within `radius`, in
+  /// `squared`, in no order; the first is the largest.
+  void FindNearest(const Vec3& p, float radius, size_t most, std::vector<float>* squared) const;
+
   int64_t MemoryBytes() const;
 
  private:
@@ -68,11 +72,35 @@ class PhotonForest {
     }
   };
 
+  /// Keeps the distances of the nearest points in a heap.
+  struct Nearest {
+    float radiusSquared;
+    size_t most;
+    std::vector<float>& squared;
+    uint32_t first = 0;
+
+    float worstDist() const { return squared.size() < most ? radiusSquared : squared.front(); }
+    bool full() const { return true; }
+    bool addPoint(float distanceSquared, uint32_t) {
+      if (squared.size() == most) {
+        std::pop_heap(squared.begin(), squared.end());
+        squared.pop_back();
+      }
+      squared.push_back(distanceSquared);
+      std::push_heap(squared.begin(), squared.end());
+      return true;
+    }
+  };
+
   struct Bucket {
     BucketPoints points;
     uint32_t first = 0;
     std::unique_ptr<Tree> tree;
   };
+
+  /// Hands a nanoflann result set all points nearer to `p` than its `worstDist()`, which may shrink.
+  template <typename Results>
+  void Search(const Vec3& p, Results& results) const;
 
   size_t BucketCount() const { return buckets_.size(); }
   void SplitIntoBuckets(int levels, const Follower& follow);
@@ -86,26 +114,41 @@ class PhotonForest {
 
 template <typename Visitor>
 void PhotonForest::ForEachWithin(const Vec3& p, float radius, Visitor&& visit) const {
+  PassOn<Visitor> passOn{radius * radius, 0, visit};
+  Search(p, passOn);
+}
+
+template <typename Results>
+void PhotonForest::Search(const Vec3& p, Results& results) const {
   if (positions_.empty()) return;
-  const float radiusSquared = radius * radius;
-  const auto reaches = [&](const Bounds3& box) {
+  const auto distanceTo = [&](uint32_t node) {
+    const Bounds3& box = boxes_[node];
     const Vec3 nearest(std::clamp(p.x, box.min.x, box.max.x), std::clamp(p.y, box.min.y, box.max.y),
                        std::clamp(p.z, box.min.z, box.max.z));
-    return DistanceSquared(p, nearest) < radiusSquared;
+    return DistanceSquared(p, nearest);
   };
-  uint32_t stack[64];
+  struct Node {
+    uint32_t index;
+    float distanceSquared;
+  };
+  Node stack[64];
   int size = 0;
-  if (reaches(boxes_[1])) stack[size++] = 1;
+  stack[size++] = {1, distanceTo(1)};
   while (size > 0) {
-    const uint32_t node = stack[--size];
-    if (node >= BucketCount()) {
-      const Bucket& bucket = buckets_[node - BucketCount()];
-      PassOn<Visitor> passOn{radiusSquared, bucket.first, visit};
-      bucket.tree->findNeighbors(passOn, &p.x, {});
+    const Node node = stack[--size];
+    if (!(node.distanceSquared < results.worstDist())) continue;
+    if (node.index >= BucketCount()) {
+      const Bucket& bucket = buckets_[node.index - BucketCount()];
+      results.first = bucket.first;
+      bucket.tree->findNeighbors(results, &p.x, {});
       continue;
     }
-    for (uint32_t child : {2 * node + 1, 2 * node})
-      if (reaches(boxes_[child])) stack[size++] = child;
+    // The nearer child is searched first.
+    const Node left{2 * node.index, distanceTo(2 * node.index)};
+    const Node right{2 * node.index + 1, distanceTo(2 * node.index + 1)};
+    const bool isLeftNearer = left.distanceSquared <= right.distanceSquared;
+    stack[size++] = isLeftNearer ? right : left;
+    stack[size++] = isLeftNearer ? left : right;
   }
 }
 

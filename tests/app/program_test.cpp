@@ -44,6 +44,18 @@ TEST_F(Program, StatisticsCountWhatWasDone) {
   EXPECT_EQ(Run("tiny.pbrt --passes 1 -o a.exr --stats missing/stats.json").exitCode, 1);
 }
 
+TEST_F(Program, WhatAFileTunesForSppmHoldsForSppmAlone) {
+  WriteScene("tiny.pbrt");
+  Write("tuned.pbrt", "Integrator \"sppm\" \"integer photonsperiteration\" 100\n" + Read("tiny.pbrt"));
+  const auto emitted = [&](const std::string& options) -> int64_t {
+    EXPECT_EQ(Run("tuned.pbrt --passes 1 -o a.exr --stats stats.json --quiet " + options).exitCode, 0);
+    return nlohmann::json::parse(Read("stats.json"))["photons"]["emitted"];
+  };
+  EXPECT_EQ(emitted(""), 100);
+  EXPECT_EQ(emitted("--integrator hybrid"), 24 * 16);
+  EXPECT_EQ(emitted("--integrator hybrid --photons 50"), 50);
+}
+
 TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
   WriteScene("tiny.pbrt");
   for (const char* arguments : {"",
@@ -134,7 +146,7 @@ TEST_F(Program, SaysWhatItDid) {
   const ProgramResult result = Run("render tiny.pbrt");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   // A glass sphere under a point light is for photons; the scene's four samples a pixel are four passes.
-  EXPECT_TRUE(Contains(result.err, "tiny.pbrt: 24 x 16, sppm ("));
+  EXPECT_TRUE(Contains(result.err, "tiny.pbrt: 24 x 16, hybrid ("));
   EXPECT_TRUE(Contains(result.err, "100 %: 4 passes, "));
   EXPECT_FALSE(Contains(result.err, "\x1b")) << "no terminal, no control characters";
   for (const char* text : {"4 passes in ", "rays ", "photons ", "noise ", "memory "})
@@ -224,7 +236,7 @@ TEST_P(ProgramByIntegrator, TheSameSeedGivesTheSameFileWithAnyNumberOfThreads) {
       << "another seed, another noise";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ProgramByIntegrator, testing::Values("path", "light_tracing", "sppm"),
+INSTANTIATE_TEST_SUITE_P(All, ProgramByIntegrator, testing::Values("path", "light_tracing", "sppm", "hybrid"),
                          [](const auto& instance) { return std::string(instance.param); });
 
 TEST_F(Program, ATimeBudgetIsKeptAndRecorded) {
@@ -277,10 +289,9 @@ TEST_F(Program, WarnsOfAnIntegratorThatItLacksUnlessAnotherIsAskedFor) {
   for (const std::string command : {"info bdpt.pbrt", "render bdpt.pbrt --quiet --passes 1"}) {
     const ProgramResult result = Run(command);
     EXPECT_EQ(result.exitCode, 0);
-    EXPECT_EQ(
-        result.err,
-        "bdpt.pbrt:1:1: warning: integrator \"bdpt\" is not one of Dapple's (path, light_tracing, sppm); what the "
-        "scene holds decides: sppm\n");
+    EXPECT_EQ(result.err,
+              "bdpt.pbrt:1:1: warning: integrator \"bdpt\" is not one of Dapple's (path, light_tracing, sppm, hybrid); "
+              "what the scene holds decides: hybrid\n");
     EXPECT_EQ(Run(command + " --integrator path").err, "");
   }
 }
@@ -291,7 +302,7 @@ TEST_F(Program, InfoSaysWhatIsThereAndWhatFollows) {
   ASSERT_EQ(result.exitCode, 0) << result.err;
   for (const char* text :
        {"pbrt version 4: ", "2 shapes", "1 point", "24 x 16 pixels", "light 0: point, power 377 377 377 W",
-        "sppm: ", "4 passes (the scene's samples a pixel)", "skips"})
+        "hybrid: ", "4 passes (the scene's samples a pixel)", "skips"})
     EXPECT_TRUE(Contains(result.out, text));
   EXPECT_FALSE(Exists("tiny.exr")) << "info renders nothing";
   EXPECT_TRUE(Contains(Run("info tiny.pbrt --integrator path --passes 7").out, "7 passes (asked for)"));

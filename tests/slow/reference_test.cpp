@@ -95,7 +95,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"cbox-v3", "cbox", "path", 256}, Case{"ring-v3", "ring", "path", 512, 32, 0.02, kRingLeak},
                       Case{"envglass-v3", "envglass", "path", 128}, Case{"veach-v3", "veach", "path", 128},
                       Case{"cbox-v3", "cbox", "sppm", 128}, Case{"ring-v3", "ring", "sppm", 128, 32, 0.02, kRingLeak},
-                      Case{"lens-v3", "lens", "sppm", 128}, Case{"envglass-v3", "envglass", "sppm", 128}),
+                      Case{"lens-v3", "lens", "sppm", 128}, Case{"envglass-v3", "envglass", "sppm", 128},
+                      Case{"cbox-v3", "cbox", "hybrid", 64}, Case{"lens-v3", "lens", "hybrid", 64},
+                      Case{"envglass-v3", "envglass", "hybrid", 64}, Case{"veach-v3", "veach", "hybrid", 64}),
     NameOf);
 // The square map of envglass-v4 is resampled: single blocks may differ by 3 %, as the references' README says. In the
 // darkest corner of its sky they differ by 6 %: there the file itself holds 0.01414 (its texels, read without
