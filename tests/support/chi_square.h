@@ -1,7 +1,7 @@
 // Chi-square goodness of fit between a sampling routine and the density that it claims: on the interval, the disk, the
 // sphere, the hemisphere, a cone, or any domain with coordinates of equal measure (area x direction, for one).
 //
-//   const double level = SidakLevel(0.01, kTests);   // 1 % for the whole family of kTests
+//   const double level = SidakLevel(0.01, kTests);   // 1 % for the whole family of kTests: mostly those of a file
 //   const ChiSquare fit = ChiSquareOnSphere(sample, pdf, {.seed = 1});
 //   EXPECT_GT(fit.pValue, level) << fit.message;
 //
