@@ -6,9 +6,13 @@
 // next-event samples at each, against a reference of its own (256 camera samples of 16, "product", MIS). Relative MSE
 // over all pixels, and over those from which the brightest direction of the map cannot be seen (those on a rim left
 // out).
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 

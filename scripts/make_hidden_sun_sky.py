@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the sky of scenes/hidden-sun.pbrt: a dim one, brighter toward the zenith, with a tiny sun of one pixel in it.
+"""Writes the sky of scenes/hidden-sun.pbrt: dim, bluer and darker toward the zenith, with a tiny sun of one pixel.
 
     scripts/make_hidden_sun_sky.py scenes/textures/hidden-sun.hdr
 
@@ -11,7 +11,7 @@ import sys
 
 WIDTH, HEIGHT = 256, 128
 SUN_X, SUN_Y = 148, 38  # 54 degrees from the zenith
-# The sun brings a horizontal plane about four times as much light as the sky.
+# The sun brings a horizontal plane 3.7 times as much light as the sky (luminance).
 SUN = (24000.0, 21000.0, 17000.0)
 
 

@@ -44,11 +44,14 @@ RayFormat FormatOf(const std::string& path) {
   throw Error(FileLocation(path), "expected a file name that ends in .csv, .json or .ply");
 }
 
+/// Sums of millions of colours need more than floats: the red, green and blue of one.
+Vec3d ComponentsOf(const Color& c) { return ToDouble(Vec3(c.r, c.g, c.b)); }
+
 /// The power of what the rays were drawn from.
-Color PowerOf(const Scene& scene, const std::optional<int>& light) {
-  if (light) return scene.Lights()[static_cast<size_t>(*light)]->Power();
-  Color sum;
-  for (const auto& one : scene.Lights()) sum += one->Power();
+Vec3d PowerOf(const Scene& scene, const std::optional<int>& light) {
+  if (light) return ComponentsOf(scene.Lights()[static_cast<size_t>(*light)]->Power());
+  Vec3d sum(0);
+  for (const auto& one : scene.Lights()) sum += ComponentsOf(one->Power());
   return sum;
 }
 
@@ -63,15 +66,15 @@ int RunEmit(const EmitCommandOptions& options) {
       AtLocation(FileLocation(options.scene.scene), [&] { return EmitRays(scene, options.emit); });
   WriteFileAtomically(options.output, format(scene, emitted));
 
-  Color flux;
-  for (const EmittedRay& ray : emitted.rays) flux += ray.flux;
-  const Color power = PowerOf(scene, options.emit.light);
+  Vec3d flux(0);
+  for (const EmittedRay& ray : emitted.rays) flux += ComponentsOf(ray.flux);
+  const Vec3d power = PowerOf(scene, options.emit.light);
   fmt::print("{}\n", options.output);
   fmt::print("rays      {} of {}\n", FormatNumberOf(static_cast<int64_t>(emitted.rays.size()), "ray", "rays"),
              options.emit.light ? fmt::format("light {}", *options.emit.light)
                                 : FormatNumberOf(static_cast<int64_t>(scene.Lights().size()), "light", "lights"));
-  fmt::print("flux      {:.6g} {:.6g} {:.6g} W together\n", flux.r, flux.g, flux.b);
-  fmt::print("power     {:.6g} {:.6g} {:.6g} W\n", power.r, power.g, power.b);
+  fmt::print("flux      {:.6g} {:.6g} {:.6g} W together\n", flux.x, flux.y, flux.z);
+  fmt::print("power     {:.6g} {:.6g} {:.6g} W\n", power.x, power.y, power.z);
   return kExitSuccess;
 }
 

@@ -112,7 +112,7 @@ TEST(Warps, Triangle) {
 }
 
 // One percent for all the chi-square tests of warps together.
-constexpr int kChiSquareTests = 40;
+constexpr int kChiSquareTests = 28;
 const double kLevel = testing::SidakLevel(0.01, kChiSquareTests);
 constexpr testing::ChiSquareOptions kOptions{.samples = 50'000, .rows = 16, .columns = 32, .seed = 9};
 
