@@ -50,6 +50,7 @@ inline std::vector<WeightedLobes> NonSpecularCases() {
       {"FresnelBlend", {{FresnelBlend{Ggx(0.2f, 0.4f), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
       {"BeckmannFresnelBlend", {{FresnelBlend{Beckmann(0.3f, 0.3f), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
       {"AshikhminShirleyFresnelBlend", {{FresnelBlend{CosinePower(60, 10), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
+      {"RoughestFresnelBlend", {{FresnelBlend{Ggx(1, 1), Color(1), Color(1)}, Color(1)}}},
       {"RoughCoatedDiffuseBase", {{CoatedDiffuseBase(gray, 1.5f, 0.3f, kRoughCoat), Color(1)}}},
       {"CoatedDiffuseBase", {{CoatedDiffuseBase(gray, 1.5f, fe), Color(1)}}},
       {"CoatedRoughConductor", {{CoatedRoughConductor{Ggx(0.3f, 0.3f), 1.5f, eta / 1.5f, k / 1.5f}, Color(1)}}},
