@@ -45,7 +45,9 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
       });
 }
 
-bool SurvivesRoulette(double u, float etaScale, Color* throughput) {
+bool SurvivesRoulette(int scattered, double u, float etaScale, Color* throughput) {
+  constexpr int kSureBounces = 3;
+  if (scattered <= kSureBounces) return true;
   const float keep = throughput->MaxComponent() * etaScale;
   if (keep >= 1) return true;
   if (!(u < keep)) return false;

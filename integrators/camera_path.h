@@ -48,9 +48,10 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
 LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
                        const DirectLighting& direct = {});
 
-/// True where `path` still has its share of energy after Russian roulette; scales its throughput. `etaScale` undoes the
-/// change of radiance by refraction, which comes back when the path leaves the medium (pbrt-v4, section 14.5.4).
-bool SurvivesRoulette(double u, float etaScale, Color* throughput);
+/// True where a path still has its share of energy after Russian roulette, which begins after three scattering events;
+/// scales its throughput. `etaScale` undoes the change of radiance by refraction, which comes back when the path leaves
+/// the medium (pbrt-v4, section 14.5.4).
+bool SurvivesRoulette(int scattered, double u, float etaScale, Color* throughput);
 
 template <typename Weigh>
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, Weigh&& weigh) {

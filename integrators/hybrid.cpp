@@ -26,6 +26,9 @@ SurfaceInteraction OriginOf(const LeSample& le) {
   return origin;
 }
 
+/// A weight as photons carry it: huge, but finite.
+float ToFloatRange(double weight) { return static_cast<float>(std::min(weight, 1e30)); }
+
 /// How narrow a scattering is that goes a way of this density: 0 for the widest, 1 for specular ones.
 double Sharpness(double pdf) {
   constexpr double kHalfSharp = 10;  // per solid angle: a lobe of about 0.1 sr
@@ -54,11 +57,11 @@ void HybridIntegrator::Prepare(const Scene& scene, uint64_t seed) {
 
 HybridIntegrator::MergeSite HybridIntegrator::SiteAt(const Vec3& p, const Merging& merging) const {
   const GatherForecast forecast = plan_->radius.At(p);
-  const double area = Sqr(static_cast<double>(merging.radiusFactor));
+  const double factorSquared = Sqr(static_cast<double>(merging.radiusFactor));
   // The Epanechnikov kernel's variance is that of a disk of 3/4 the area.
   return {forecast.radius * merging.radiusFactor,
-          static_cast<double>(plan_->paths) * (0.75 * kPiD) * Sqr(static_cast<double>(forecast.radius)) * area,
-          static_cast<double>(forecast.photons) * area};
+          static_cast<double>(plan_->paths) * (0.75 * kPiD) * Sqr(static_cast<double>(forecast.radius)) * factorSquared,
+          static_cast<double>(forecast.photons) * factorSquared};
 }
 
 PassStats HybridIntegrator::RenderPass(int pass, Film& film) const {
@@ -87,12 +90,12 @@ class HybridIntegrator::LightWalk {
 
   void Scatter(const LightVertex& vertex, const BsdfSample& next) {
     const double cosOut = static_cast<double>(AbsDot(vertex.hit.ng, next.wi));
-    const MergeSite site = hybrid_.SiteAt(vertex.hit.p, merging_);
     if (vertex.scattered == 0) {
-      weights_.Begin(PathsAtFirst(vertex, next, site), cosOut);
+      weights_.Begin(PathsAtFirst(vertex, next), cosOut);
     } else if (next.IsSpecular()) {
       weights_.ScatterSpecular(cosOut);
     } else {
+      const MergeSite site = hybrid_.SiteAt(vertex.hit.p, merging_);
       const double pdf = CameraPdf(vertex, next);
       weights_.Scatter(site.eta, static_cast<double>(next.pdf), pdf * ContinueProbability(pdf, site.photons),
                        Sharpness(pdf), cosOut);
@@ -115,7 +118,7 @@ class HybridIntegrator::LightWalk {
 
   /// Of a path that leaves its first surface: the densities of light sampling there and of scattering into the light,
   /// over that of the light path, of which `next` is the newest part.
-  double PathsAtFirst(const LightVertex& vertex, const BsdfSample& next, const MergeSite& site) const {
+  double PathsAtFirst(const LightVertex& vertex, const BsdfSample& next) const {
     const LeSample& le = emitted_.le;
     const double distanceSquared = LengthSquared(ToDouble(vertex.hit.p) - ToDouble(le.ray.o));
     const double ratio = EmissionRatio(emitted_.Pdf(), static_cast<double>(le.cosTheta), le.deltaPos, distanceSquared) *
@@ -129,7 +132,7 @@ class HybridIntegrator::LightWalk {
     double paths = hybrid_.LightPdf(at, emitted_.light, vertex.hit.wo, light_.IsInfinite() ? nullptr : &origin);
     if (!light_.IsDelta()) {
       const double pdf = CameraPdf(vertex, next);
-      paths += pdf * ContinueProbability(pdf, site.photons);
+      paths += pdf * ContinueProbability(pdf, hybrid_.SiteAt(vertex.hit.p, merging_).photons);
     }
     return paths / (ratio * static_cast<double>(next.pdf));
   }
@@ -150,7 +153,7 @@ PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
           // Light straight from its source is sampled where it is needed.
           if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
           chunk.Store(v.hit.p, {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng),
-                                static_cast<float>(others.merging), static_cast<float>(others.paths), v.scattered});
+                                ToFloatRange(others.merging), ToFloatRange(others.paths), v.scattered});
         };
         const auto scatter = [&](const LightVertex& v, const BsdfSample& next) { walk.Scatter(v, next); };
         chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store, scatter);
@@ -185,7 +188,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
     const double uLobe = sampler.Get1D();
     double uContinue = sampler.Get1D();
     walk.last.at = ContextOf(*scene_, *hit, bsdf, options_.direct);
-    const MergeSite site = SiteAt(hit->p, merging);
+    const MergeSite site = bsdf.IsPurelySpecular() ? MergeSite{} : SiteAt(hit->p, merging);
     if (!bsdf.IsPurelySpecular()) {
       if (sampler.Get1D() < walk.mergeProbability)
         radiance += walk.throughput * Merge(walk, merging, site, *hit, bsdf, stats);
@@ -213,8 +216,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
       walk.mergeProbability *= Sharpness(pdf);
     }
     walk.ray = SpawnRay(*hit, next->wi);
-    constexpr int kSureBounces = 3;
-    if (walk.scattered > kSureBounces && !SurvivesRoulette(uContinue, etaScale, &walk.throughput)) return radiance;
+    if (!SurvivesRoulette(walk.scattered, uContinue, etaScale, &walk.throughput)) return radiance;
   }
 }
 

@@ -57,8 +57,8 @@ class HybridIntegrator final : public Integrator {
   /// Merging at a place: functions of the place alone, so that both walks agree on them.
   struct MergeSite {
     float radius;
-    double eta;      ///< weight of merging, see merging_weights.h
-    double photons;  ///< expected within the radius
+    double eta;      ///< weight of merging, scene units squared, see merging_weights.h
+    double photons;  ///< of this pass, expected within the radius
   };
   MergeSite SiteAt(const Vec3& p, const Merging& merging) const;
 

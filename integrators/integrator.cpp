@@ -46,12 +46,14 @@ IntegratorChoice SelectIntegrator(const SceneFacts& facts) {
   return {"path", "only large lights: paths find their caustics by chance"};
 }
 
-IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene) {
+IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, DirectTechnique direct) {
   if (!requested.empty() && requested != "auto") return {std::string(requested), "asked for"};
   const std::string& fromScene = scene.Settings().integrator;
   for (std::string_view known : IntegratorNames())
     if (requested.empty() && fromScene == known) return {fromScene, "the scene asks for it"};
-  return SelectIntegrator(scene.Facts());
+  const IntegratorChoice choice = SelectIntegrator(scene.Facts());
+  if (choice.name != "hybrid" || direct == DirectTechnique::Mis) return choice;
+  return {"sppm", choice.reason + "; direct light by one technique alone"};
 }
 
 }  // namespace dapple

@@ -89,6 +89,8 @@ struct IntegratorChoice {
 IntegratorChoice SelectIntegrator(const SceneFacts& facts);
 
 /// The user's name, else the scene's where Dapple has it, else `SelectIntegrator`. `requested` may be empty or "auto".
-IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene);
+/// Where the rule decides and direct light shall be found by one technique alone, `hybrid`, which joins all, gives way
+/// to `sppm`.
+IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, DirectTechnique direct);
 
 }  // namespace dapple

@@ -53,8 +53,7 @@ Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) cons
     etaScale *= next->eta * next->eta;
     last = {next->IsSpecular(), at, next->pdf};
     ray = SpawnRay(*hit, next->wi);
-    constexpr int kSureBounces = 3;
-    if (scattered > kSureBounces && !SurvivesRoulette(uRoulette, etaScale, &throughput)) return radiance;
+    if (!SurvivesRoulette(scattered, uRoulette, etaScale, &throughput)) return radiance;
   }
 }
 

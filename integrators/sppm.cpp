@@ -98,8 +98,7 @@ Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photon
       isDone = !isGlossy;
     }
     ray = SpawnRay(*hit, next->wi);
-    constexpr int kSureBounces = 8;
-    if (scattered > kSureBounces && !SurvivesRoulette(uRoulette, etaScale, &throughput)) return radiance;
+    if (!SurvivesRoulette(scattered, uRoulette, etaScale, &throughput)) return radiance;
   }
 }
 

@@ -2,8 +2,8 @@
 //
 // A pass traces photons, builds a photon map, and follows one camera path a pixel to the first surface that is not
 // purely specular. There, direct light is sampled (with multiple importance sampling), and the photons within a radius
-// give the rest. The radius starts at the pixel's footprint on the surface and shrinks with the pass number, so that
-// noise and blur both vanish; no statistics are kept from pass to pass.
+// give the rest. The radius starts at what a pilot learned for the place (src/photons/gather_radius.h) and shrinks with
+// the pass number, so that noise and blur both vanish; no statistics are kept from pass to pass.
 //
 // A glossy surface sees what a mirror sees, blurred: few photons come from where it looks. It gathers caustic photons
 // only (light that met nothing but specular surfaces), and the camera path goes on through it to find all other light.

@@ -120,7 +120,7 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
       ->group(group);
   command
       ->add_flag("--no-guide", options->noGuide,
-                 "sppm: emit photons as the lights do, without a pilot that learns which of them are of use")
+                 "sppm, hybrid: emit photons as the lights do, without a pilot that learns which of them are of use")
       ->group(group);
   command
       ->add_option("--light-samples", options->lightSamples,
@@ -202,13 +202,13 @@ LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
 RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics) {
   const RenderSettings& settings = scene.Settings();
   RenderPlan plan;
-  plan.choice = ResolveIntegrator(options.integrator, scene);
+  plan.choice = ResolveIntegrator(options.integrator, scene, options.direct);
   if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
   // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
-  const bool isScenes = plan.choice.name == "sppm";
-  plan.options.photonsPerPass = isScenes ? Either(options.photons, settings.photonsPerIteration) : options.photons;
-  plan.options.radius = isScenes ? Either(options.radius, settings.radius) : options.radius;
+  const bool isTunedByFile = plan.choice.name == "sppm";
+  plan.options.photonsPerPass = isTunedByFile ? Either(options.photons, settings.photonsPerIteration) : options.photons;
+  plan.options.radius = isTunedByFile ? Either(options.radius, settings.radius) : options.radius;
   plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);

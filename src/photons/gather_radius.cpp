@@ -82,7 +82,9 @@ void GatherRadius::Fill(const std::vector<Vec3>& positions, const std::vector<fl
   }
 }
 
-float GatherRadius::Widest(const Vec3& p) const { return widestAtLens_ + widestSpread_ * Distance(p, camera_); }
+float GatherRadius::Widest(const Vec3& p) const {
+  return std::max(widestAtLens_ + widestSpread_ * Distance(p, camera_), unit_ * 1e-9f);
+}
 
 uint64_t GatherRadius::KeyOf(const Vec3& p, Level level) const {
   // A power of two, so that neighbours at nearly the same distance share a grid.
@@ -111,7 +113,8 @@ GatherForecast GatherRadius::At(const Vec3& p) const {
     forecast.radius = *fixed_;
   } else {
     const float wanted = density > 0 ? std::sqrt(static_cast<float>(kPhotons) * kInvPi / density) : widest;
-    forecast.radius = std::min(wanted, widest) * scale_;
+    constexpr float kNarrowest = static_cast<float>(kMinPixels / kMaxPixels);
+    forecast.radius = std::clamp(wanted, kNarrowest * widest, widest) * scale_;
   }
   forecast.photons = density * kPi * Sqr(forecast.radius);
   return forecast;

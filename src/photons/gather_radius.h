@@ -1,10 +1,10 @@
 // Within what radius photons are gathered at a place: wide where few land, narrow where many do.
 //
 // A pilot of light paths tells how dense photons are. The radius at a place is the one within which a pass is expected
-// to have `kPhotons` of them, but no more than `kMaxPixels` pixels' width as seen from the camera: so caustics are
-// sharp, and dim light is smooth. It is a function of the place alone, learned before the first pass: passes share it,
-// and walks from the camera and from the lights agree on it. The schedule of radius_schedule.h shrinks it with the
-// passes.
+// to have `kPhotons` of them, between `kMinPixels` and `kMaxPixels` pixels' widths as seen from the camera: so caustics
+// are sharp, dim light is smooth, and no focus is so narrow that a pixel's few camera rays miss it. It is a function of
+// the place alone, learned before the first pass: passes share it, and walks from the camera and from the lights agree
+// on it. The schedule of radius_schedule.h shrinks it with the passes.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,6 @@ struct GatherForecast {
 
 class GatherRadius {
  public:
-  GatherRadius() = default;
   struct Options {
     int maxDepth = 32;            ///< scattering events on a light path
     double scale = 1;             ///< factor on the radii
@@ -35,10 +34,9 @@ class GatherRadius {
 
   GatherForecast At(const Vec3& p) const;
 
-  int64_t MemoryBytes() const { return static_cast<int64_t>(cells_.capacity() * sizeof(Cell)); }
-
   static constexpr double kPhotons = 16;
   static constexpr double kMaxPixels = 6;
+  static constexpr double kMinPixels = 1;
 
  private:
   /// A cube of space in which the pilot left photons.
@@ -50,7 +48,7 @@ class GatherRadius {
   /// Cells are as wide as the widest radius there (fine), or four times as wide (coarse).
   enum class Level { Fine, Coarse };
 
-  /// `kMaxPixels` times the width of a pixel at the distance of `p` from the camera.
+  /// `kMaxPixels` times the width of a pixel at the distance of `p` from the camera; positive at the camera too.
   float Widest(const Vec3& p) const;
   uint64_t KeyOf(const Vec3& p, Level level) const;
   const Cell* Find(uint64_t key) const;

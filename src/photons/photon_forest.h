@@ -1,6 +1,7 @@
 // Points in space, in buckets with a nanoflann kd-tree each; see photon_map.h.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -82,6 +83,8 @@ class PhotonForest {
     float worstDist() const { return squared.size() < most ? radiusSquared : squared.front(); }
     bool full() const { return true; }
     bool addPoint(float distanceSquared, uint32_t) {
+      // nanoflann asks for `worstDist` once a leaf.
+      if (!(distanceSquared < worstDist())) return true;
       if (squared.size() == most) {
         std::pop_heap(squared.begin(), squared.end());
         squared.pop_back();

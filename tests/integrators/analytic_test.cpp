@@ -120,7 +120,8 @@ TEST(PointLight, FallsWithSquaredDistanceAndCosine) {
         "Material \"matte\" \"rgb Kd\" [.5 .5 .5] Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
         "\"point P\" [-5 -5 0 5 -5 0 5 5 0 -5 5 0] WorldEnd";
     const double r2 = d * d + 4, exact = 0.5 / kPiD * 3 * (2 / std::sqrt(r2)) / r2;
-    for (const char* integrator : {"path", "sppm", "hybrid"}) ExpectRadiance(MeanRadiance(scene, integrator, 32), exact, 1e-4);
+    for (const char* integrator : {"path", "sppm", "hybrid"})
+      ExpectRadiance(MeanRadiance(scene, integrator, 32), exact, 1e-4);
   }
 }
 

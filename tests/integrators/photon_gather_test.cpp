@@ -25,7 +25,7 @@ std::string Box(double h) {
 
 /// Mean radiance of what a camera sees of a closed white room with a lamp inside. `outside`: its outer shell, if any,
 /// as text.
-double SeenOfRoom(const std::string& outside, const std::string& lookAt) {
+double SeenOfRoom(const std::string& integrator, const std::string& outside, const std::string& lookAt) {
   const auto scene =
       SceneFromText("LookAt " + lookAt +
                     " 0 0 1 Camera \"perspective\" \"float fov\" [20] "
@@ -38,7 +38,7 @@ double SeenOfRoom(const std::string& outside, const std::string& lookAt) {
   options.photonsPerPass = 20000;
   options.radius = 0.1;
   options.maxDepth = 3;
-  const GroupedImages images = RenderGroups(*scene, "sppm", options, 2, 1);
+  const GroupedImages images = RenderGroups(*scene, integrator, options, 2, 1);
   const Image mean = BlockMeans(images.Mean(), 16);
   return mean.ColorAt(0, 0).Average();
 }
@@ -46,16 +46,20 @@ double SeenOfRoom(const std::string& outside, const std::string& lookAt) {
 TEST(PhotonGather, NothingLeaksThroughWallsATenthOfTheRadiusThick) {
   constexpr double kThickness = 0.01;
   const std::string outer = Box(1 + kThickness);
-  const double lit = SeenOfRoom("", "0 -0.9 0  0 1 0");
-  EXPECT_GT(lit, 0.1);
   // What lets light through is asked too: behind the white wall there is none, but photons of its other face are near.
-  for (const std::string& outside : {std::string(), "Material \"matte\" " + outer, "Material \"translucent\" " + outer})
-    for (const char* lookAt : {"0 -4 0  0 0 0", "-2.4 -2.4 1.2  -1 -1 0.95"})
-      EXPECT_LT(SeenOfRoom(outside, lookAt), 1e-4 * lit) << outside << " seen from " << lookAt;
+  for (const std::string integrator : {"sppm", "hybrid"}) {
+    const double lit = SeenOfRoom(integrator, "", "0 -0.9 0  0 1 0");
+    EXPECT_GT(lit, 0.1);
+    for (const std::string& outside :
+         {std::string(), "Material \"matte\" " + outer, "Material \"translucent\" " + outer})
+      for (const char* lookAt : {"0 -4 0  0 0 0", "-2.4 -2.4 1.2  -1 -1 0.95"})
+        EXPECT_LT(SeenOfRoom(integrator, outside, lookAt), 1e-4 * lit)
+            << integrator << ": " << outside << " seen from " << lookAt;
+  }
 }
 
 /// A glass ball on a white floor beside a wall, under a lamp; everything times `scale`, then moved by `offset`.
-Image CausticAt(double scale, double offset) {
+Image CausticAt(const std::string& integrator, double scale, double offset) {
   const auto at = [&](double x) { return x * scale + offset; };
   const auto scene =
       SceneFromText(fmt::format("LookAt {} {} {}  {} {} {}  0 0 1 ", at(0), at(-5), at(3), at(0), at(0), at(0.5)) +
@@ -71,18 +75,20 @@ Image CausticAt(double scale, double offset) {
                     "Material \"glass\" Translate -0.3 0.2 1 Shape \"sphere\" \"float radius\" [0.9] WorldEnd");
   IntegratorOptions options;
   options.photonsPerPass = 20000;
-  return RenderGroups(*scene, "sppm", options, 2, 1).Mean();
+  return RenderGroups(*scene, integrator, options, 2, 1).Mean();
 }
 
 // The same random numbers make the same paths, but for the few that rounding turns another way.
 TEST(PhotonGather, ScenesFarAwayTinyAndHugeGiveTheSamePicture) {
-  const Image expected = CausticAt(1, 0);
   const struct { double scale, offset; } kCases[] = {{1, 1e7}, {1e-6, 0}, {1e6, 0}, {1e6, 1e7}};
-  for (const auto& c : kCases) {
-    const Image image = CausticAt(c.scale, c.offset);
-    const ImageDifference difference = CompareImages(image, expected);
-    EXPECT_NEAR(difference.meanRatio, 1, 1e-4) << "scale " << c.scale << ", offset " << c.offset;
-    EXPECT_LT(difference.relativeMse, 1e-6) << "scale " << c.scale << ", offset " << c.offset;
+  for (const std::string integrator : {"sppm", "hybrid"}) {
+    const Image expected = CausticAt(integrator, 1, 0);
+    for (const auto& c : kCases) {
+      SCOPED_TRACE(fmt::format("{}, scale {}, offset {}", integrator, c.scale, c.offset));
+      const ImageDifference difference = CompareImages(CausticAt(integrator, c.scale, c.offset), expected);
+      EXPECT_NEAR(difference.meanRatio, 1, 1e-4);
+      EXPECT_LT(difference.relativeMse, 1e-6);
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "src/base/hash.h"
 #include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
 
@@ -30,6 +31,36 @@ std::vector<int> Within(const PhotonMap<int>& map, const Vec3& p, float radius) 
   map.ForEachWithin(p, radius, [&](const Vec3&, int photon, float) { found.push_back(photon); });
   std::sort(found.begin(), found.end());
   return found;
+}
+
+TEST(PhotonForest, FindsTheNearestPoints) {
+  constexpr size_t kPoints = 20000;  // several buckets
+  std::vector<Vec3> points;
+  for (uint64_t i = 0; i < kPoints; ++i) {
+    const auto coordinate = [&](uint64_t axis) { return static_cast<float>(Hash(i, axis) >> 40) * 0x1p-24f; };
+    points.emplace_back(coordinate(0), coordinate(1), coordinate(2));
+  }
+  const PhotonForest forest{std::vector<Vec3>(points)};
+  std::vector<float> found;
+  for (const float radius : {0.02f, 0.1f, 2.f})
+    for (size_t query = 0; query < kPoints; query += 500) {
+      const Vec3 p = points[query] + Vec3(0.003f, 0, 0);
+      std::vector<float> expected;
+      for (const Vec3& point : points) {
+        const float squared = DistanceSquared(p, point);
+        if (squared < radius * radius) expected.push_back(squared);
+      }
+      std::sort(expected.begin(), expected.end());
+      constexpr size_t kMost = 17;
+      if (expected.size() > kMost) expected.resize(kMost);
+      forest.FindNearest(p, radius, kMost, &found);
+      ASSERT_EQ(found.size(), expected.size());
+      if (!found.empty()) {
+        ASSERT_FLOAT_EQ(found.front(), expected.back());
+      }
+      std::sort(found.begin(), found.end());
+      for (size_t i = 0; i < found.size(); ++i) ASSERT_FLOAT_EQ(found[i], expected[i]);
+    }
 }
 
 TEST(PhotonMap, FindsJustThePhotonsWithinTheRadius) {
