@@ -35,7 +35,7 @@ class GatherRadius {
   GatherForecast At(const Vec3& p) const;
 
   static constexpr double kPhotons = 16;
-  static constexpr double kMaxPixels = 6;
+  static constexpr double kMaxPixels = 2;
   static constexpr double kMinPixels = 1;
 
  private:

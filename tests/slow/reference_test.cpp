@@ -28,10 +28,13 @@ std::unique_ptr<Scene> Load(const std::string& file) {
   return LoadScene(ReferenceFolder() + "/" + file, {}, diagnostics);
 }
 
-IntegratorOptions OptionsOf(const Scene& scene) {
+/// As the program has them: what a file tunes for sppm holds for sppm alone.
+IntegratorOptions OptionsOf(const Scene& scene, const std::string& integrator) {
   IntegratorOptions options;
   options.maxDepth = scene.Settings().maxDepth.value_or(options.maxDepth);
+  if (integrator != "sppm") return options;
   options.photonsPerPass = scene.Settings().photonsPerIteration;
+  options.radius = scene.Settings().radius;
   return options;
 }
 
@@ -80,7 +83,8 @@ TEST_P(BlockMeansAgree, WithinTwoPercentAndThreeSigma) {
   // The two passes of a group are independent, so many groups of one pair show the noise of random samples.
   const bool isNoisy = c.referenceSamples > 0;
   const int groups = isNoisy ? c.passes / 2 : kGroups, kept = isNoisy ? c.blockSize : 1;
-  const GroupedImages images = RenderGroups(*scene, c.integrator, OptionsOf(*scene), c.passes, groups, 1, kept);
+  const GroupedImages images =
+      RenderGroups(*scene, c.integrator, OptionsOf(*scene, c.integrator), c.passes, groups, 1, kept);
   const GroupedImages reference = Exact(BlockMeans(ReadImage(ReferenceFolder() + "/" + c.reference + ".exr"), kept));
   const BlockReport report = CompareBlocks(images, reference, c.blockSize / kept, c.tolerance, {}, c.floor,
                                            isNoisy ? double(c.passes) / c.referenceSamples : 0);
@@ -122,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The check above must be able to fail: it rejects a picture without its caustic, and one with the caustic elsewhere.
 TEST_F(Reference, MissingCausticIsRejected) {
   const auto scene = Load("lens-v3.pbrt");
-  const GroupedImages images = RenderGroups(*scene, "path", OptionsOf(*scene), 16, kGroups);
+  const GroupedImages images = RenderGroups(*scene, "path", OptionsOf(*scene, "path"), 16, kGroups);
   const BlockReport report =
       CompareBlocks(images, Exact(ReadImage(ReferenceFolder() + "/lens.exr")), 32, kBlockTolerance);
   EXPECT_GT(report.failed, 3) << report.text;
@@ -130,7 +134,7 @@ TEST_F(Reference, MissingCausticIsRejected) {
 
 TEST_F(Reference, MisplacedCausticIsRejected) {
   const auto scene = Load("ring-v3.pbrt");
-  const GroupedImages images = RenderGroups(*scene, "sppm", OptionsOf(*scene), 32, kGroups);
+  const GroupedImages images = RenderGroups(*scene, "sppm", OptionsOf(*scene, "sppm"), 32, kGroups);
   const Image reference = ReadImage(ReferenceFolder() + "/ring.exr");
   Image shifted = reference;
   constexpr int kShift = 4;
@@ -150,7 +154,7 @@ TEST_P(Slope, OfErrorAgainstPasses) {
   const Image reference = ReadImage(ReferenceFolder() + "/" + c.reference + ".exr");
   const std::vector<int> stops = {4, 8, 16, 32, 64};
   std::vector<double> logError(stops.size());
-  IntegratorOptions options = OptionsOf(*scene);
+  IntegratorOptions options = OptionsOf(*scene, c.integrator);
   if (c.photons > 0) options.photonsPerPass = c.photons;
   constexpr int kSeeds = 5;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
