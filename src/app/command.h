@@ -20,5 +20,6 @@ void AddRenderCommand(CLI::App& program, Action* action);
 void AddInfoCommand(CLI::App& program, Action* action);
 void AddEmitCommand(CLI::App& program, Action* action);
 void AddEnvmapCommand(CLI::App& program, Action* action);
+void AddCompareCommand(CLI::App& program, Action* action);
 
 }  // namespace dapple

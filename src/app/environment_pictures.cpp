@@ -1,12 +1,12 @@
 #include "src/app/environment_pictures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lights/environment_statistics.h"
 #include "src/base/numerics.h"
 #include "src/base/parallel.h"
+#include "src/image/false_color.h"
 #include "src/sampling/sampler.h"
 
 namespace dapple {
@@ -21,21 +21,10 @@ Vec2i PictureSize(EnvironmentMapping mapping) {
 constexpr int kMarginalWidth = 160;
 constexpr int kGap = 4;
 
-/// Colours of equal steps of the scale, from its low end to its high one (linear values).
-constexpr std::array<Color, 6> kRamp = {Color(0, 0, 0),
-                                        Color(0.05f, 0.01f, 0.16f),
-                                        Color(0.32f, 0.02f, 0.18f),
-                                        Color(0.85f, 0.12f, 0.03f),
-                                        Color(1, 0.6f, 0.05f),
-                                        Color(1, 1, 1)};
-
 /// `density` over the even one.
-Color RampColor(double density) {
+Color DensityColor(double density) {
   constexpr double kLowest = -6, kHighest = 10;
-  const double t = density > 0 ? (std::log2(density) - kLowest) / (kHighest - kLowest) : 0;
-  const double place = std::clamp(t, 0.0, 1.0) * (kRamp.size() - 1);
-  const size_t i = std::min(static_cast<size_t>(place), kRamp.size() - 2);
-  return Lerp(static_cast<float>(place - static_cast<double>(i)), kRamp[i], kRamp[i + 1]);
+  return RampColor(density > 0 ? (std::log2(density) - kLowest) / (kHighest - kLowest) : 0);
 }
 
 /// The mean of f(direction) over a pixel of the picture, by a grid of points in it as fine as the map's pixels.
@@ -111,7 +100,7 @@ Image DensityPicture(const EnvironmentMap& map) {
     double sum = 0;
     for (int x = 0; x < size.x; ++x) {
       const double pdf = MeanOverPixel(map, size, x, y, [&](const Vec3d& w) { return map.Evaluate(w).pdf; });
-      picture.SetColor(x, y, RampColor(4 * kPiD * pdf));
+      picture.SetColor(x, y, DensityColor(4 * kPiD * pdf));
       sum += pdf * solidAngle;
     }
     marginal.drawn[static_cast<size_t>(row)] = sum * size.y;

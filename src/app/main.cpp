@@ -24,7 +24,8 @@ constexpr const char* kFooter =
 
 /// The arguments, without the program's name, with "render" put in front where no subcommand is named.
 std::vector<std::string> Arguments(int argc, char** argv) {
-  constexpr std::array<std::string_view, 7> kKnown{"render", "info", "emit", "envmap", "-h", "--help", "--version"};
+  constexpr std::array<std::string_view, 8> kKnown{"render",  "info", "emit",   "envmap",
+                                                   "compare", "-h",   "--help", "--version"};
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool isNamed = !arguments.empty() && std::find(kKnown.begin(), kKnown.end(), arguments[0]) != kKnown.end();
   if (!arguments.empty() && !isNamed) arguments.insert(arguments.begin(), "render");
@@ -56,6 +57,7 @@ int Run(int argc, char** argv) {
   AddInfoCommand(program, &action);
   AddEmitCommand(program, &action);
   AddEnvmapCommand(program, &action);
+  AddCompareCommand(program, &action);
   if (const int code = Parse(program, Arguments(argc, argv)); code >= 0) return code;
   return action();
 }

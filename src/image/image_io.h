@@ -64,8 +64,11 @@ enum class ExrPixelType { kFloat, kHalf };
 void WriteExr(const std::string& path, const Image& image, const ImageMetadata& metadata = {},
               ExrPixelType type = ExrPixelType::kFloat);
 
-/// Writes `image.ColorAt` of every pixel, clamped to [0, 1] and sRGB-encoded, 8 bits a channel. The same image gives
-/// the same bytes. Throws `Error`.
+/// A PNG file of `image.ColorAt` of every pixel, clamped to [0, 1] and sRGB-encoded, 8 bits a channel. The same image
+/// gives the same bytes. Throws `Error` at `location`.
+std::string EncodePng(const Image& image, const FileLocation& location = {});
+
+/// Writes what `EncodePng` gives. Throws `Error`.
 void WritePng(const std::string& path, const Image& image);
 
 /// The metadata of an EXR file that `WriteExr` could have written (strings, doubles, integers; floats become doubles).

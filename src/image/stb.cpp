@@ -151,8 +151,7 @@ Image ReadStb(std::string_view bytes, ColorEncoding encoding, const FileLocation
   return DecodeIntegers(Load<stbi_uc>(bytes, stbi_load_from_callbacks, location), encoding);
 }
 
-void WritePng(const std::string& path, const Image& image) {
-  const FileLocation location(path);
+std::string EncodePng(const Image& image, const FileLocation& location) {
   CheckImageSize(image.Width(), image.Height(), location);
   std::vector<uint8_t> codes;
   codes.reserve(static_cast<size_t>(image.Width()) * static_cast<size_t>(image.Height()) * Color::kComponents);
@@ -170,7 +169,11 @@ void WritePng(const std::string& path, const Image& image) {
   const int stride = image.Width() * Color::kComponents;
   if (!stbi_write_png_to_func(append, &bytes, image.Width(), image.Height(), Color::kComponents, codes.data(), stride))
     throw Error(location, "cannot encode the PNG file");
-  WriteFileAtomically(path, bytes);
+  return bytes;
+}
+
+void WritePng(const std::string& path, const Image& image) {
+  WriteFileAtomically(path, EncodePng(image, FileLocation(path)));
 }
 
 }  // namespace dapple

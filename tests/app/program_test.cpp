@@ -21,7 +21,8 @@ using Program = ProgramTest;
 TEST_F(Program, HelpNamesTheSubcommandsAndExitCodes) {
   const ProgramResult result = Run("--help");
   EXPECT_EQ(result.exitCode, 0);
-  for (const char* text : {"render", "info", "emit", "envmap", "Exit codes"}) EXPECT_TRUE(Contains(result.out, text));
+  for (const char* text : {"render", "info", "emit", "envmap", "compare", "Exit codes"})
+    EXPECT_TRUE(Contains(result.out, text));
   EXPECT_TRUE(Contains(Run("render --help").out, "--integrator"));
   EXPECT_TRUE(Contains(Run("info --help").out, "--pbrt-version"));
 }
@@ -94,6 +95,9 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
                                 "emit tiny.pbrt --light x -o a.csv",
                                 "envmap",
                                 "envmap a.exr --mapping cube",
+                                "compare",
+                                "compare a.exr",
+                                "compare a.exr b.exr --of colour",
                                 "envmap a.exr --samples 10",
                                 "envmap a.exr --samples 0 --sample-image a.png"}) {
     const ProgramResult result = Run(arguments);
