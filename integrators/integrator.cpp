@@ -11,6 +11,27 @@
 
 namespace dapple {
 
+namespace {
+
+template <typename T>
+std::string ToText(const std::optional<T>& value) {
+  return value ? fmt::format("{}", *value) : "automatic";
+}
+
+std::string ToText(DirectTechnique technique) {
+  switch (technique) {
+    case DirectTechnique::Mis:
+      return "mis";
+    case DirectTechnique::Light:
+      return "light";
+    case DirectTechnique::Bsdf:
+      return "bsdf";
+  }
+  return "";
+}
+
+}  // namespace
+
 PassStats& PassStats::operator+=(const PassStats& s) {
   cameraRays += s.cameraRays;
   shadowRays += s.shadowRays;
@@ -21,6 +42,21 @@ PassStats& PassStats::operator+=(const PassStats& s) {
   photonsGathered += s.photonsGathered;
   splats += s.splats;
   return *this;
+}
+
+std::vector<std::pair<std::string, std::string>> DescribeOptions(const IntegratorOptions& options) {
+  // All members by name: one that is added and not told here does not compile.
+  const auto& [maxDepth, photonsPerPass, radius, radiusScale, guideEmission, direct] = options;
+  const auto& [technique, lightSamples] = direct;
+  return {
+      {"max-depth", fmt::format("{}", maxDepth)},
+      {"photons", ToText(photonsPerPass)},
+      {"radius", ToText(radius)},
+      {"radius-scale", fmt::format("{}", radiusScale)},
+      {"guide", guideEmission ? "on" : "off"},
+      {"direct", ToText(technique)},
+      {"light-samples", ToText(lightSamples)},
+  };
 }
 
 std::vector<std::string_view> IntegratorNames() { return {"path", "light_tracing", "sppm", "hybrid"}; }

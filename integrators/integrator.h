@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "src/image/film.h"
@@ -58,6 +59,10 @@ struct IntegratorOptions {
   bool guideEmission = true;          ///< a pilot learns where photons are of use (src/photons/emission_guide.h)
   DirectLighting direct;
 };
+
+/// All options by name, as text: two renders of one scene, seed and integrator have the same bits where these are
+/// equal.
+std::vector<std::pair<std::string, std::string>> DescribeOptions(const IntegratorOptions& options);
 
 class Integrator {
  public:

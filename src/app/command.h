@@ -21,5 +21,6 @@ void AddInfoCommand(CLI::App& program, Action* action);
 void AddEmitCommand(CLI::App& program, Action* action);
 void AddEnvmapCommand(CLI::App& program, Action* action);
 void AddCompareCommand(CLI::App& program, Action* action);
+void AddMergeCommand(CLI::App& program, Action* action);
 
 }  // namespace dapple

@@ -1,9 +1,8 @@
 // The `dapple` program: finds the subcommand, runs it, and turns what goes wrong into one line and an exit code.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <new>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -23,11 +22,11 @@ constexpr const char* kFooter =
     "128 + N where signal N ended a render early; its picture is written.";
 
 /// The arguments, without the program's name, with "render" put in front where no subcommand is named.
-std::vector<std::string> Arguments(int argc, char** argv) {
-  constexpr std::array<std::string_view, 8> kKnown{"render",  "info", "emit",   "envmap",
-                                                   "compare", "-h",   "--help", "--version"};
+std::vector<std::string> Arguments(CLI::App& program, int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
-  const bool isNamed = !arguments.empty() && std::find(kKnown.begin(), kKnown.end(), arguments[0]) != kKnown.end();
+  std::vector<std::string> known{"-h", "--help", "--version"};
+  for (const CLI::App* subcommand : program.get_subcommands({})) known.push_back(subcommand->get_name());
+  const bool isNamed = !arguments.empty() && std::find(known.begin(), known.end(), arguments[0]) != known.end();
   if (!arguments.empty() && !isNamed) arguments.insert(arguments.begin(), "render");
   return arguments;
 }
@@ -54,11 +53,12 @@ int Run(int argc, char** argv) {
   });
   Action action;
   AddRenderCommand(program, &action);
+  AddMergeCommand(program, &action);
   AddInfoCommand(program, &action);
   AddEmitCommand(program, &action);
   AddEnvmapCommand(program, &action);
   AddCompareCommand(program, &action);
-  if (const int code = Parse(program, Arguments(argc, argv)); code >= 0) return code;
+  if (const int code = Parse(program, Arguments(program, argc, argv)); code >= 0) return code;
   return action();
 }
 

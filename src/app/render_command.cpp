@@ -7,17 +7,18 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Option.hpp>
+#include <fmt/ranges.h>
 
 #include "src/app/command.h"
 #include "src/app/format.h"
 #include "src/app/memory.h"
 #include "src/app/progress_display.h"
+#include "src/app/render_outputs.h"
 #include "src/app/scene_options.h"
 #include "src/app/signals.h"
 #include "src/base/parallel.h"
 #include "src/image/atomic_file.h"
 #include "src/render/driver.h"
-#include "src/render/output.h"
 #include "src/render/statistics.h"
 
 namespace dapple {
@@ -38,10 +39,13 @@ std::string SceneName(const std::string& path) {
   return name.stem().string();
 }
 
-/// In the current folder: the name that the scene's film gives, or the scene's own, as an EXR file.
-std::string DefaultOutput(const std::string& scene, const RenderSettings& settings) {
+/// In the current folder: the name that the scene's film gives, or the scene's own, as an EXR file; for a range of
+/// passes with the range, as the exact sums.
+std::string DefaultOutput(const RenderOptions& options, const RenderSettings& settings) {
   const std::filesystem::path named = std::filesystem::path(settings.outputFile).filename();
-  return (named.empty() ? SceneName(scene) : named.stem().string()) + ".exr";
+  const std::string name = named.empty() ? SceneName(options.scene) : named.stem().string();
+  if (options.isPart) return fmt::format("{}.{}-{}.dapple", name, options.passes->begin, options.passes->end);
+  return name + ".exr";
 }
 
 std::string Rate(int64_t count, double seconds) {
@@ -82,12 +86,20 @@ void WarnOfNonFinite(const Film& film) {
              FormatNumberOf(film.NonFiniteCount(), "sample was", "samples were"));
 }
 
-RenderRecord MakeRecord(const RenderOptions& options, const RenderPlan& plan, const RenderResult& result,
-                        const Film& film) {
-  RenderRecord record;
-  record.scene = std::filesystem::path(options.scene).filename().string();
-  record.integrator = plan.choice.name;
-  record.seed = plan.seed;
+RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded, const RenderPlan& plan) {
+  const RenderSettings& settings = loaded.scene->Settings();
+  RenderOrigin origin;
+  origin.identity = MakeIdentity(loaded.contentHash, settings, plan.choice.name, plan.options, plan.seed);
+  origin.record.scene = std::filesystem::path(options.scene).filename().string();
+  origin.record.integrator = plan.choice.name;
+  origin.record.seed = plan.seed;
+  origin.exposure = settings.exposure;
+  return origin;
+}
+
+RenderRecord MakeRecord(const RenderOptions& options, const RenderPlan& plan, const RenderOrigin& origin,
+                        const RenderResult& result, const Film& film) {
+  RenderRecord record = origin.record;
   record.passes = static_cast<int>(film.PassCount());
   if (plan.budget.seconds || options.recordsSeconds) record.seconds = result.seconds;
   return record;
@@ -107,20 +119,21 @@ RenderResult RenderWithProgress(const Scene& scene, const RenderPlan& plan, cons
 }
 
 int RunRender(RenderOptions options) {
-  for (const std::string& output : options.outputs) CheckOutput(output);
+  for (const std::string& output : options.outputs) CheckRenderOutput(output);
   if (!options.statistics.empty()) CheckFolder(options.statistics);
   const ThreadLimit threads(options.threads);
   Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   const LoadedScene loaded = Load(options, diagnostics);
   const Scene& scene = *loaded.scene;
   if (options.outputs.empty()) {
-    options.outputs.push_back(DefaultOutput(options.scene, scene.Settings()));
-    CheckOutput(options.outputs[0]);
+    options.outputs.push_back(DefaultOutput(options, scene.Settings()));
+    CheckRenderOutput(options.outputs[0]);
   }
   const RenderPlan plan = MakePlan(scene, options, diagnostics);
   if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
   }
+  const RenderOrigin origin = MakeOrigin(options, loaded, plan);
   const StopSignals signals;
   if (!options.isQuiet) PrintStart(options, scene, plan);
   Film film(scene.Settings().resolution, scene.Settings().crop, scene.Settings().filter);
@@ -129,13 +142,9 @@ int RunRender(RenderOptions options) {
     fmt::print(stderr, "stopped before the first pass; no picture is written\n");
     return 128 + signals.Signal();
   }
-  const Image picture = ToPicture(film, scene.Settings());
-  const RenderRecord record = MakeRecord(options, plan, result, film);
-  const ImageMetadata metadata = ToMetadata(record);
-  for (const std::string& output : options.outputs) {
-    WriteOutput(output, picture, metadata);
-    if (!options.isQuiet) fmt::print("{}\n", output);
-  }
+  const RenderRecord record = MakeRecord(options, plan, origin, result, film);
+  WriteRenderOutputs(options.outputs, origin, record, film);
+  if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
   if (!options.statistics.empty()) WriteFileAtomically(options.statistics, StatisticsToJson(record, result, film));
   WarnOfNonFinite(film);
   if (!options.isQuiet) PrintSummary(result, film);
@@ -149,8 +158,9 @@ void AddRenderCommand(CLI::App& program, Action* action) {
   const auto options = std::make_shared<RenderOptions>();
   command
       ->add_option("-o,--output", options->outputs,
-                   "The picture: .exr (linear, all digits) or .png (sRGB); may be given several times. By default the "
-                   "name that the scene gives, as .exr in the current folder")
+                   "The picture: .exr (linear, all digits) or .png (sRGB); or .dapple, the exact sums for `dapple "
+                   "merge`. May be given several times. By default the name that the scene gives, as .exr in the "
+                   "current folder")
       ->allow_extra_args(false)
       ->type_name("FILE");
   options->AddTo(command);

@@ -14,6 +14,7 @@
 
 #include "src/image/image_io.h"
 #include "src/io/pbrt_parser.h"
+#include "src/io/scene_hash.h"
 
 namespace dapple {
 
@@ -63,6 +64,15 @@ std::array<double, 4> ParseCrop(const std::string& text) {
   return {(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
 }
 
+void ParsePasses(const std::string& text, SceneOptions* options) {
+  const auto n = SplitNumbers<int>(text, ':');
+  options->isPart = n && n->size() == 2;
+  if (n && n->size() <= 2) options->passes = options->isPart ? PassRange{(*n)[0], (*n)[1]} : PassRange{0, (*n)[0]};
+  if (options->passes && options->passes->begin >= 0 && !options->passes->IsEmpty()) return;
+  throw CLI::ValidationError("--passes",
+                             fmt::format("expected a number N >= 1, or a range A:B with 0 <= A < B, not '{}'", text));
+}
+
 DirectTechnique ParseDirect(const std::string& text) {
   if (text == "mis") return DirectTechnique::Mis;
   if (text == "light") return DirectTechnique::Light;
@@ -96,9 +106,11 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
       ->check(CLI::IsMember(names).description(""))
       ->type_name("NAME")
       ->group(group);
-  CLI::Option* const passes = command->add_option("--passes", options->passes, "Render N passes")
-                                  ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
-                                  ->type_name("N")
+  CLI::Option* const passes = command
+                                  ->add_option_function<std::string>(
+                                      "--passes", [options](const std::string& text) { ParsePasses(text, options); },
+                                      "Render N passes; or, of the whole, passes A to B - 1, for `dapple merge`")
+                                  ->type_name("N|A:B")
                                   ->group(group);
   command->add_option("--time", options->seconds, "Render for so long, to within a pass")
       ->check(CheckPositive)
@@ -155,7 +167,8 @@ void SetBudget(const RenderSettings& settings, const SceneOptions& options, Rend
     plan->budget.seconds = options.seconds;
     plan->budgetReason = "asked for";
   } else if (options.passes) {
-    plan->budget.passes = options.passes;
+    plan->budget.passes = static_cast<int>(options.passes->Count());
+    plan->budget.firstPass = static_cast<int>(options.passes->begin);
     plan->budgetReason = "asked for";
   } else if (hasIterations || settings.samplesPerPixel) {
     plan->budget.passes = hasIterations ? settings.iterations : settings.samplesPerPixel;
@@ -196,7 +209,8 @@ LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
   BuildOptions build;
   build.resolution = options.resolution;
   build.cropWindow = options.crop;
-  return {description.version, description.versionReason, BuildScene(description, build, diagnostics)};
+  return {description.version, description.versionReason, HashSceneContent(description),
+          BuildScene(description, build, diagnostics)};
 }
 
 RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics) {

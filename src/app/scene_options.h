@@ -30,7 +30,8 @@ struct SceneOptions {
   std::optional<Vec2i> resolution;
   std::optional<std::array<double, 4>> crop;  ///< x0, x1, y0, y1 as shares of the picture
   std::string integrator;
-  std::optional<int> passes;
+  std::optional<PassRange> passes;  ///< not empty; its ends are ints
+  bool isPart = false;              ///< `passes` were given as a range of the whole
   std::optional<double> seconds;
   std::optional<int> seed;
   std::optional<int> maxDepth;
@@ -50,6 +51,7 @@ struct SceneOptions {
 struct LoadedScene {
   int version = 0;
   std::string versionReason;
+  std::string contentHash;  ///< `HashSceneContent`
   std::unique_ptr<Scene> scene;
 };
 

@@ -83,19 +83,21 @@ void FlushFolder(const fs::path& target) {
 
 }  // namespace
 
-void WriteFileAtomically(const std::string& path, std::string_view bytes) {
+void WriteFileAtomically(const std::string& path, std::string_view bytes) { WriteFileAtomically(path, {bytes}); }
+
+void WriteFileAtomically(const std::string& path, std::initializer_list<std::string_view> pieces) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (fs::is_directory(status)) Fail(path, "cannot write the file", EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     OutputFile file(path, O_WRONLY | O_CLOEXEC, /*removeOnFailure=*/false, path);
-    file.Write(bytes);
+    for (const std::string_view piece : pieces) file.Write(piece);
     return file.Close();
   }
   const fs::path target = fs::exists(status) ? fs::canonical(path, failure) : fs::path(path);
   if (failure && fs::exists(status)) Fail(path, "cannot write the file", failure.value());
   OutputFile file(TemporaryName(target), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, /*removeOnFailure=*/true, path);
-  file.Write(bytes);
+  for (const std::string_view piece : pieces) file.Write(piece);
   file.Flush();
   file.Close();
   file.RenameTo(target);

@@ -1,6 +1,7 @@
 // Writing a file so that a reader, a crash or a full disk never meets half of it.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -10,5 +11,7 @@ namespace dapple {
 /// and renamed. On failure the temporary is removed, an older file of that name is left as it was, and `Error` is
 /// thrown. A link is followed; what is no regular file (a device, a pipe) is written straight.
 void WriteFileAtomically(const std::string& path, std::string_view bytes);
+/// The same, with the pieces one after another as content.
+void WriteFileAtomically(const std::string& path, std::initializer_list<std::string_view> pieces);
 
 }  // namespace dapple

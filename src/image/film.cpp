@@ -13,7 +13,8 @@ namespace dapple {
 
 namespace {
 
-// What stands before the sums in a serialised film. All little-endian, as memory is here.
+// What stands first in a serialised film; the ranges of its passes follow, and the sums of both halves. All
+// little-endian, as memory is here.
 struct FilmHeader {
   char mark[8];
   uint32_t version;
@@ -21,17 +22,32 @@ struct FilmHeader {
   int32_t width, height;
   int32_t cropMinX, cropMinY, cropMaxX, cropMaxY;
   double filterRadiusX, filterRadiusY, filterP, filterQ;
-  int64_t passes[2];
+  uint64_t passRanges;
   uint64_t nonFinite;
 };
 static_assert(std::endian::native == std::endian::little);
-static_assert(sizeof(FilmHeader) == 96 && std::is_trivially_copyable_v<FilmHeader>);
+static_assert(sizeof(PassRange) == 16 && std::is_trivially_copyable_v<PassRange>);
+static_assert(sizeof(FilmHeader) == 88 && std::is_trivially_copyable_v<FilmHeader>);
 
 constexpr char kMark[8] = {'D', 'A', 'P', 'P', 'L', 'E', 'F', 'M'};
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 // The most pixels that a filter can touch along one axis: its radius is at most 64.
 constexpr int kMaxFootprint = 130;
+
+// The set of passes whose ranges stand at `bytes`, which must be in the order of the set's one form.
+PassRanges ReadPasses(std::span<const std::byte> bytes, const FileLocation& location) {
+  PassRanges passes;
+  int64_t last = -1;
+  for (size_t at = 0; at < bytes.size(); at += sizeof(PassRange)) {
+    PassRange range;
+    std::memcpy(&range, bytes.data() + at, sizeof(range));
+    if (range.begin <= last || range.IsEmpty()) throw Error(location, "stored film with passes that make no sense");
+    passes.Add(range);
+    last = range.end;
+  }
+  return passes;
+}
 
 void CheckSizes(const Vec2i& resolution, const PixelBounds& crop, const FileLocation& location) {
   const bool fits = resolution.x >= 1 && resolution.y >= 1 && resolution.x <= kMaxFilmSide &&
@@ -158,12 +174,12 @@ Image Film::ToImage() const {
 
 Image Film::HalfImage(int half) const {
   assert(half == 0 || half == 1);
-  return MakeImage(passes_[half], [&](size_t i) { return sums_[half][i]; });
+  return MakeImage(PassCount(half), [&](size_t i) { return sums_[half][i]; });
 }
 
 std::optional<double> Film::NoiseEstimate() const {
-  if (passes_[0] == 0 || passes_[1] == 0) return std::nullopt;
-  const double n0 = static_cast<double>(passes_[0]), n1 = static_cast<double>(passes_[1]);
+  if (PassCount(0) == 0 || PassCount(1) == 0) return std::nullopt;
+  const double n0 = static_cast<double>(PassCount(0)), n1 = static_cast<double>(PassCount(1));
   const double varianceFactor = n0 * n1 / Sqr(n0 + n1);
   double sum = 0;
   for (size_t i = 0; i < sums_[0].size(); ++i) {
@@ -179,8 +195,10 @@ std::optional<double> Film::NoiseEstimate() const {
 void Film::Merge(const Film& other) {
   if (fullResolution_ != other.fullResolution_ || crop_ != other.crop_ || !(filter_ == other.filter_))
     throw Error("cannot add films that differ: expected the same resolution, crop and filter");
+  if (const auto common = passes_.FirstCommon(other.passes_))
+    throw Error(fmt::format("cannot add films that both hold {}", common->ToString()));
+  for (const PassRange& range : other.passes_.All()) passes_.Add(range);
   for (size_t half = 0; half < sums_.size(); ++half) {
-    passes_[half] += other.passes_[half];
     for (size_t i = 0; i < sums_[half].size(); ++i)
       for (int c = 0; c < Color::kComponents; ++c) sums_[half][i][c] += other.sums_[half][i][c];
   }
@@ -203,14 +221,19 @@ std::vector<std::byte> Film::Serialize() const {
   header.filterRadiusY = filter.radiusY;
   header.filterP = filter.p;
   header.filterQ = filter.q;
-  header.passes[0] = passes_[0];
-  header.passes[1] = passes_[1];
+  header.passRanges = passes_.All().size();
   header.nonFinite = nonFinite_;
-  const size_t sumBytes = sums_[0].size() * sizeof(PixelSums);
-  std::vector<std::byte> bytes(sizeof(header) + 2 * sumBytes);
-  std::memcpy(bytes.data(), &header, sizeof(header));
-  for (size_t half = 0; half < sums_.size(); ++half)
-    std::memcpy(bytes.data() + sizeof(header) + half * sumBytes, sums_[half].data(), sumBytes);
+  const std::vector<PassRange>& ranges = passes_.All();
+  std::vector<std::byte> bytes(sizeof(header) + ranges.size() * sizeof(PassRange) +
+                               2 * sums_[0].size() * sizeof(PixelSums));
+  size_t end = 0;
+  const auto append = [&](std::span<const std::byte> piece) {
+    if (!piece.empty()) std::memcpy(bytes.data() + end, piece.data(), piece.size());
+    end += piece.size();
+  };
+  append(std::as_bytes(std::span(&header, 1)));
+  append(std::as_bytes(std::span(ranges)));
+  for (const auto& sums : sums_) append(std::as_bytes(std::span(sums)));
   return bytes;
 }
 
@@ -225,17 +248,16 @@ Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& loc
   const PixelBounds crop{{header.cropMinX, header.cropMinY}, {header.cropMaxX, header.cropMaxY}};
   CheckSizes(resolution, crop, location);
   const size_t sumBytes = static_cast<size_t>(crop.Area()) * sizeof(PixelSums);
-  if (bytes.size() != sizeof(header) + 2 * sumBytes)
-    throw Error(location,
-                fmt::format("stored film of {} bytes, expected {}", bytes.size(), sizeof(header) + 2 * sumBytes));
-  if (header.passes[0] < 0 || header.passes[1] < 0)
-    throw Error(location, "stored film with a negative number of passes");
+  const size_t rangeBytes = std::min<size_t>(header.passRanges, bytes.size()) * sizeof(PassRange);
+  const size_t expected = sizeof(header) + rangeBytes + 2 * sumBytes;
+  if (bytes.size() != expected)
+    throw Error(location, fmt::format("stored film of {} bytes, expected {}", bytes.size(), expected));
   const Filter filter = Filter::FromDescription(
       {header.filterKind, header.filterRadiusX, header.filterRadiusY, header.filterP, header.filterQ}, location);
   Film film(resolution, crop, filter, location);
+  film.passes_ = ReadPasses(bytes.subspan(sizeof(header), rangeBytes), location);
   for (size_t half = 0; half < film.sums_.size(); ++half)
-    std::memcpy(film.sums_[half].data(), bytes.data() + sizeof(header) + half * sumBytes, sumBytes);
-  film.passes_ = {header.passes[0], header.passes[1]};
+    std::memcpy(film.sums_[half].data(), bytes.data() + sizeof(header) + rangeBytes + half * sumBytes, sumBytes);
   film.nonFinite_ = header.nonFinite;
   return film;
 }

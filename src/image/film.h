@@ -25,6 +25,7 @@
 #include "src/base/vec.h"
 #include "src/image/filter.h"
 #include "src/image/image.h"
+#include "src/image/pass_ranges.h"
 
 namespace dapple {
 
@@ -81,10 +82,11 @@ class Film {
   void AddSplat(const Vec2& position, const Color& value, int64_t pass);
 
   /// Counts `pass` as complete. Call it once a pass, by one thread, after all its samples and splats.
-  void FinishPass(int64_t pass) { ++passes_[HalfOf(pass)]; }
-  /// Number of finished passes; of the even (0) or odd (1) ones.
-  int64_t PassCount() const { return passes_[0] + passes_[1]; }
-  int64_t PassCount(int half) const { return passes_[half]; }
+  void FinishPass(int64_t pass) { passes_.Add({pass, pass + 1}); }
+  /// The finished passes, and how many they are; of the even (0) or odd (1) ones.
+  const PassRanges& Passes() const { return passes_; }
+  int64_t PassCount() const { return passes_.Count(); }
+  int64_t PassCount(int half) const { return passes_.Count(half); }
   /// How many samples and splats were refused: a channel infinite, NaN, or at least 2^40 in magnitude.
   int64_t NonFiniteCount() const { return static_cast<int64_t>(nonFinite_); }
 
@@ -99,7 +101,8 @@ class Film {
   /// if passes are independent, and for n0 = n1 whenever the halves are. Nothing before both halves have a pass.
   std::optional<double> NoiseEstimate() const;
 
-  /// Adds the sums and counts of another film of the same resolution, crop and filter, exactly. Throws `Error`.
+  /// Adds the sums and passes of another film of the same resolution, crop and filter, exactly. Throws `Error` where
+  /// they differ, or where a pass is in both.
   void Merge(const Film& other);
 
   /// The whole state as bytes, and back. `Deserialize` throws `Error` at `location` where the bytes are not a film of
@@ -129,7 +132,7 @@ class Film {
   PixelBounds crop_;
   Filter filter_;
   std::array<std::vector<PixelSums>, 2> sums_;
-  std::array<int64_t, 2> passes_{};
+  PassRanges passes_;
   uint64_t nonFinite_ = 0;
   std::vector<uint8_t> tileLocks_;  // one for each kTileSide x kTileSide pixels; 1 while a splat is added there
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <limits>
 
 namespace dapple {
 
@@ -36,6 +37,12 @@ class PassClock {
   int passes_ = 0;
   double last_ = 0, previous_ = 0, total_ = 0;
 };
+
+/// The first pass of the budget that the film does not hold.
+int NextPass(const RenderBudget& budget, const Film& film) {
+  const PassRange andOn{budget.firstPass, std::numeric_limits<int>::max()};
+  return static_cast<int>(film.Passes().FirstMissing(andOn)->begin);
+}
 
 bool IsStopAsked(const RenderHooks& hooks) { return hooks.stop && hooks.stop->load(std::memory_order_relaxed); }
 
@@ -80,15 +87,15 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
   result.prepareSeconds = watch.Seconds();
   report();
   while (true) {
-    const int pass = static_cast<int>(film.PassCount());
+    const int passesBefore = static_cast<int>(film.PassCount());
     const double begin = watch.Seconds();
-    if (IsSpent(budget, pass, begin, clock)) break;
+    if (IsSpent(budget, passesBefore, begin, clock)) break;
     if (IsStopAsked(hooks)) {
       result.stopped = true;
       break;
     }
-    result.stats += integrator.RenderPass(pass, film);
-    assert(film.PassCount() == pass + 1);
+    result.stats += integrator.RenderPass(NextPass(budget, film), film);
+    assert(film.PassCount() == passesBefore + 1);
     ++result.passes;
     clock.Add(watch.Seconds() - begin);
     report();

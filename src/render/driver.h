@@ -19,14 +19,16 @@
 
 namespace dapple {
 
-/// When a render ends: at whichever of the two is reached first. At least one must be set.
+/// Which passes are rendered. A render ends when they are all there or the time is up, whichever is first; at least
+/// one of the two must be set.
 struct RenderBudget {
-  /// Passes that the film shall hold in the end, >= 1.
+  /// Passes that the film shall hold in the end, >= 1: `firstPass` to firstPass + passes - 1.
   std::optional<int> passes;
   /// Wall-clock seconds from the beginning of the preparation, > 0. No pass begins whose end is foreseen (from the
   /// passes before it) to lie beyond; one pass is always rendered. So it is kept to within the unsteadiness of one
   /// pass.
   std::optional<double> seconds;
+  int firstPass = 0;  ///< >= 0; other than 0 where a render is split into ranges of passes
 };
 
 /// Where a render stands.
@@ -56,9 +58,10 @@ struct RenderResult {
   bool stopped = false;  ///< ended by the stop flag before the budget was spent
 };
 
-/// Prepares the integrator and adds to the film the passes that follow those it holds: film.PassCount() and on. A film
-/// that already holds passes must come from the same scene, seed and integrator; a budget of passes counts them too.
-/// Passes run one after another, each parallel in itself. Errors of the integrator are passed on.
+/// Prepares the integrator and adds to the film the passes of the budget that it does not hold yet, in rising order. A
+/// film that already holds passes must come from the same scene, seed and integrator, and its passes must be of the
+/// budget, which counts them too. Passes run one after another, each parallel in itself. Errors of the integrator are
+/// passed on.
 RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, Film& film, const RenderBudget& budget,
                     const RenderHooks& hooks = {});
 

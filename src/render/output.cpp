@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "src/base/error.h"
-#include "src/render/version.h"
 
 namespace dapple {
 
@@ -30,16 +29,16 @@ Format FormatOf(const std::string& path) {
 
 ImageMetadata ToMetadata(const RenderRecord& record) {
   ImageMetadata metadata{
-      {"scene", record.scene}, {"integrator", record.integrator},    {"seed", record.seed}, {"passes", record.passes},
-      {"version", Version()},  {"instructionSet", InstructionSet()},
+      {"scene", record.scene},   {"integrator", record.integrator}, {"seed", record.seed},
+      {"passes", record.passes}, {"version", record.version},       {"instructionSet", record.instructionSet},
   };
   if (record.seconds) metadata["seconds"] = *record.seconds;
   return metadata;
 }
 
-Image ToPicture(const Film& film, const RenderSettings& settings) {
+Image ToPicture(const Film& film, float exposure) {
   Image picture = film.ToImage();
-  for (float& value : picture.Values()) value *= settings.exposure;
+  for (float& value : picture.Values()) value *= exposure;
   return picture;
 }
 

@@ -2,7 +2,7 @@
 // pixels.
 //
 //   CheckOutput(path);                                   // before hours of work
-//   WriteOutput(path, ToPicture(film, scene.Settings()), ToMetadata(record));
+//   WriteOutput(path, ToPicture(film, scene.Settings().exposure), ToMetadata(record));
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 #include "src/image/film.h"
 #include "src/image/image.h"
 #include "src/image/image_io.h"
-#include "src/scene/render_settings.h"
+#include "src/render/version.h"
 
 namespace dapple {
 
@@ -24,14 +24,15 @@ struct RenderRecord {
   int seed = 0;
   int passes = 0;
   std::optional<double> seconds;  ///< of the render
+  std::string version = Version();
+  std::string instructionSet = InstructionSet();
 };
 
-/// The record under the names "scene", "integrator", "seed", "passes" and "seconds", with the program's "version" and
-/// "instructionSet".
+/// The record under the names of its members.
 ImageMetadata ToMetadata(const RenderRecord& record);
 
-/// The mean of the film's passes, times the exposure of the settings.
-Image ToPicture(const Film& film, const RenderSettings& settings);
+/// The mean of the film's passes, times the exposure (of `RenderSettings`).
+Image ToPicture(const Film& film, float exposure);
 
 /// Throws `Error` where no file can be written to `path`: its folder is missing or not writable, or it is a folder
 /// itself.

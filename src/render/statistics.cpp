@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "src/render/version.h"
-
 namespace dapple {
 
 std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const Film& film) {
@@ -13,8 +11,8 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
       {"integrator", record.integrator},
       {"seed", record.seed},
       {"passes", record.passes},
-      {"version", Version()},
-      {"instructionSet", InstructionSet()},
+      {"version", record.version},
+      {"instructionSet", record.instructionSet},
       {"seconds", result.seconds},
       {"prepareSeconds", result.prepareSeconds},
       {"rays", {{"camera", stats.cameraRays}, {"shadow", stats.shadowRays}, {"photon", stats.photonRays}}},

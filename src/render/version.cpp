@@ -1,6 +1,11 @@
 #include "src/render/version.h"
 
+#include <fstream>
+#include <iterator>
 #include <string_view>
+
+#include "src/base/content_hash.h"
+#include "src/base/error.h"
 
 namespace dapple {
 
@@ -20,14 +25,36 @@ constexpr std::string_view kVectors =
     "baseline";
 #endif
 
+constexpr std::string_view kPortable = "portable";
+
 }  // namespace
 
 std::string Version() { return DAPPLE_VERSION; }
 
 std::string InstructionSet() {
   constexpr std::string_view kSet = DAPPLE_INSTRUCTION_SET;
-  if constexpr (kSet == "portable") return "portable (x86-64-v3)";
+  if constexpr (kSet == kPortable) return "portable (x86-64-v3)";
   return std::string(kSet) + " (" + std::string(kVectors) + ")";
+}
+
+bool IsPortable(const std::string& instructionSet) { return instructionSet.starts_with(kPortable); }
+
+std::string BuildId() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (bytes.empty()) throw Error("cannot read the program's own file, /proc/self/exe, to tell which build it is");
+  ContentHash hash;
+  hash.AddText(bytes);
+  return hash.Hex();
+}
+
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
 }
 
 }  // namespace dapple

@@ -265,10 +265,11 @@ TEST(Film, StateComesBackFromBytes) {
   Film film = SmallFilm(Filter::Gaussian({2, 1.5}, 1.7));
   for (uint64_t i = 0; i < 100; ++i) film.AddSplat({6, 6}, WildColor(i), static_cast<int64_t>(i));
   film.AddSample({6, 6}, Color(INFINITY), 0);
-  film.FinishPass(0);
+  for (const int pass : {0, 7, 8, 3}) film.FinishPass(pass);
   const std::vector<std::byte> bytes = film.Serialize();
   Film read = Film::Deserialize(bytes);
   EXPECT_TRUE(read == film);
+  EXPECT_EQ(read.Passes().ToString(), "0, 3, 7 to 8");
   read.AddSample({6, 6}, Color(1), 0);
   EXPECT_FALSE(read == film);
 }
@@ -300,6 +301,11 @@ TEST(Film, BadSizesAndMergesAreErrors) {
   Film film = SmallFilm();
   EXPECT_THROW(film.Merge(SmallFilm(Filter::Triangle())), Error);
   EXPECT_THROW(film.Merge(Film(kResolution, {{0, 0}, kResolution}, Filter::Box())), Error);
+  // A pass that is counted twice would weigh twice.
+  Film other = SmallFilm();
+  film.FinishPass(2);
+  other.FinishPass(2);
+  EXPECT_THROW(film.Merge(other), Error);
 }
 
 }  // namespace

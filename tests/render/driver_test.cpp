@@ -104,6 +104,27 @@ TEST(Driver, ContinuesAFilmThatHoldsPasses) {
   EXPECT_EQ(atOnce, inParts);
 }
 
+TEST(Driver, RangesOfPassesJoinToTheWholeInAnyOrder) {
+  const Scene scene = EmptyScene();
+  FakeIntegrator all, late, early;
+  Film whole = SmallFilm(), joined = SmallFilm(), first = SmallFilm();
+  Render(scene, 0, all, whole, {.passes = 7, .seconds = {}});
+  Render(scene, 0, late, joined, {.passes = 4, .seconds = {}, .firstPass = 3});
+  Render(scene, 0, early, first, {.passes = 3, .seconds = {}, .firstPass = 0});
+  EXPECT_EQ(late.passes, (std::vector<int>{3, 4, 5, 6}));
+  joined.Merge(first);
+  EXPECT_EQ(joined, whole);
+}
+
+TEST(Driver, RendersWhatIsMissingBetweenPassesThatAreThere) {
+  const Scene scene = EmptyScene();
+  FakeIntegrator middle, rest;
+  Film film = SmallFilm();
+  Render(scene, 0, middle, film, {.passes = 2, .seconds = {}, .firstPass = 2});
+  Render(scene, 0, rest, film, {.passes = 6, .seconds = {}});
+  EXPECT_EQ(rest.passes, (std::vector<int>{0, 1, 4, 5}));
+}
+
 /// Notes when the driver told its progress: `seconds[p]` with p passes done.
 struct ProgressTimes {
   RenderHooks Hooks() {

@@ -84,9 +84,7 @@ TEST(Output, ThePictureIsTheMeanOfThePassesTimesTheExposure) {
     film.AddSample({0, 0}, Color(1, 2, static_cast<float>(pass)), pass);
     film.FinishPass(pass);
   }
-  RenderSettings settings;
-  settings.exposure = 4;
-  EXPECT_EQ(ToPicture(film, settings).ColorAt(0, 0), Color(4, 8, 2));
+  EXPECT_EQ(ToPicture(film, 4).ColorAt(0, 0), Color(4, 8, 2));
 }
 
 TEST(Output, PngIsChosenByTheExtensionInAnyCase) {

@@ -1,0 +1,23 @@
+#include "src/app/render_outputs.h"
+
+namespace dapple {
+
+void CheckRenderOutput(const std::string& path) {
+  if (IsStateName(path)) return CheckFolder(path);
+  CheckOutput(path);
+}
+
+void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
+                        const Film& film) {
+  std::optional<Image> picture;
+  for (const std::string& path : paths) {
+    if (IsStateName(path)) {
+      WriteState(path, origin, film);
+      continue;
+    }
+    if (!picture) picture = ToPicture(film, origin.exposure);
+    WriteOutput(path, *picture, ToMetadata(record));
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,18 @@
+// The files in which a render's result is kept: pictures, and the exact sums.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src/render/render_state.h"
+
+namespace dapple {
+
+/// Throws `Error` where no result can be written to `path`, as `CheckOutput` does; takes ".dapple" too.
+void CheckRenderOutput(const std::string& path);
+
+/// Writes the picture of the film, or its exact sums, by the extension of each path. Throws `Error`.
+void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
+                        const Film& film);
+
+}  // namespace dapple

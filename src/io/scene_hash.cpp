@@ -1,0 +1,131 @@
+#include "src/io/scene_hash.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "src/base/content_hash.h"
+
+namespace dapple {
+
+namespace {
+
+class SceneHasher {
+ public:
+  explicit SceneHasher(const SceneDescription& scene) : scene_(scene) {}
+
+  void Add(const Entity& entity) {
+    hash_.AddText(entity.type);
+    Add(entity.params);
+  }
+  void Add(const ParameterList& params) {
+    hash_.Add(params.All().size());
+    for (const Parameter& parameter : params.All()) Add(parameter);
+  }
+  void Add(const Transform& transform) {
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) hash_.Add(transform.At(row, column));
+  }
+  void Add(const ShapeDescription& shape) {
+    Add(static_cast<const Entity&>(shape));
+    Add(shape.worldFromShape);
+    hash_.Add(shape.reverseOrientation);
+    hash_.Add(shape.material);
+    hash_.Add(shape.areaLight);
+  }
+  void Add(const TextureDescription& texture) {
+    Add(static_cast<const Entity&>(texture));
+    hash_.Add(texture.isSpectrum);
+    Add(texture.worldFromTexture);
+  }
+  void Add(const MaterialDescription& material) {
+    Add(static_cast<const Entity&>(material));
+    hash_.AddText(material.name);
+  }
+  void Add(const LightDescription& light) {
+    Add(static_cast<const Entity&>(light));
+    Add(light.worldFromLight);
+  }
+  void Add(const ObjectDefinition& object) { AddAll(object.shapes); }
+  void Add(const InstanceDescription& instance) {
+    hash_.Add(instance.object);
+    Add(instance.worldFromInstance);
+  }
+  template <typename T>
+  void AddAll(const std::vector<T>& items) {
+    hash_.Add(items.size());
+    for (const T& item : items) Add(item);
+  }
+
+  /// The picture's name is left out: a file of that name is what the render itself writes.
+  void AddFilm(const Entity& film) {
+    hash_.AddText(film.type);
+    for (const Parameter& parameter : film.params.All())
+      if (parameter.name != "filename") Add(parameter);
+  }
+  void AddNumber(int number) { hash_.Add(number); }
+
+  std::string Hex() const { return hash_.Hex(); }
+
+ private:
+  void Add(const Parameter& parameter);
+  void AddFileOf(const std::string& name, const FileLocation& namedAt);
+
+  const SceneDescription& scene_;
+  ContentHash hash_;
+};
+
+void SceneHasher::Add(const Parameter& parameter) {
+  hash_.AddText(parameter.name);
+  hash_.Add(parameter.type);
+  hash_.Add(parameter.rgbSpace);
+  hash_.Add(parameter.floatTexture);
+  hash_.Add(parameter.spectrumTexture);
+  hash_.Add(parameter.numbers.size());
+  for (const double number : parameter.numbers) hash_.Add(number);
+  hash_.Add(parameter.integers.size());
+  for (const int integer : parameter.integers) hash_.Add(integer);
+  hash_.Add(parameter.strings.size());
+  const bool mayNameFiles = parameter.type == ParameterType::String || parameter.type == ParameterType::Spectrum;
+  for (const std::string& text : parameter.strings) {
+    hash_.AddText(text);
+    if (mayNameFiles) AddFileOf(text, parameter.location);
+  }
+}
+
+// Whether a text is the name of a file depends on the parameter; that there is such a file is all that is asked. One
+// too many makes the hash only stricter.
+void SceneHasher::AddFileOf(const std::string& name, const FileLocation& namedAt) {
+  std::error_code failure;
+  const std::filesystem::path path = scene_.ResolvePath(name, namedAt);
+  if (name.empty() || !std::filesystem::is_regular_file(path, failure)) return;
+  std::ifstream file(path, std::ios::binary);
+  std::string block(size_t{1} << 20, '\0');
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash_.AddText(std::string_view(block).substr(0, static_cast<size_t>(file.gcount())));
+  }
+  if (!file.eof()) throw Error(namedAt, fmt::format("cannot read \"{}\"", path.string()));
+}
+
+}  // namespace
+
+std::string HashSceneContent(const SceneDescription& scene) {
+  SceneHasher hasher(scene);
+  hasher.Add(scene.camera);
+  hasher.Add(scene.camera.cameraFromWorld);
+  hasher.AddFilm(scene.film);
+  hasher.Add(scene.pixelFilter);
+  hasher.Add(scene.options);
+  hasher.AddAll(scene.materials);
+  hasher.AddAll(scene.textures);
+  hasher.AddAll(scene.lights);
+  hasher.AddAll(scene.areaLights);
+  hasher.AddAll(scene.shapes);
+  hasher.AddAll(scene.objects);
+  hasher.AddAll(scene.instances);
+  hasher.AddNumber(scene.version);
+  return hasher.Hex();
+}
+
+}  // namespace dapple

@@ -1,0 +1,16 @@
+// Whether a scene is still the one that it was: a hash of all that its picture follows from.
+#pragma once
+
+#include <string>
+
+#include "src/io/scene_description.h"
+
+namespace dapple {
+
+/// 32 hexadecimal digits. They follow from what the statements say and from the content of each file that a parameter
+/// names (meshes, images, spectra), and not from comments, layout, how the text is cut into files, or where it lies.
+/// The sampler's and the integrator's statements are left out: what Dapple takes from them the command line may say
+/// too, so it belongs to the options of the render. Throws `Error` where a file that is there cannot be read.
+std::string HashSceneContent(const SceneDescription& scene);
+
+}  // namespace dapple

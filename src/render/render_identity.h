@@ -1,0 +1,29 @@
+// What the bits of a pass follow from, by name: passes of two renders may be joined where their identities are equal.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "src/scene/render_settings.h"
+
+namespace dapple {
+
+/// Names and values; the values of "scene" and "build" are hashes. In the order in which they are told.
+struct RenderIdentity {
+  std::vector<std::pair<std::string, std::string>> fields;
+
+  /// "" where there is no such field.
+  std::string ValueOf(const std::string& name) const;
+};
+
+/// The identity of a render by this program on this processor. `sceneHash` as `HashSceneContent` gives it.
+RenderIdentity MakeIdentity(const std::string& sceneHash, const RenderSettings& settings, const std::string& integrator,
+                            const IntegratorOptions& options, int seed);
+
+/// What of `other` is not as in `expected`, for people: "seed 8, not 7; the scene's content"; empty where the passes of
+/// both are of one picture. Between portable builds it does not matter which build and which processor.
+std::string Differences(const RenderIdentity& other, const RenderIdentity& expected);
+
+}  // namespace dapple
