@@ -158,8 +158,9 @@ PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
         const auto scatter = [&](const LightVertex& v, const BsdfSample& next) { walk.Scatter(v, next); };
         chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store, scatter);
       });
-  merging->map = PhotonMap<Photon>(std::move(shot.positions), std::move(shot.photons));
-  return shot.stats;
+  PassStats stats;
+  merging->map = BuildPhotonMap(std::move(shot), &stats);
+  return stats;
 }
 
 Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const {

@@ -26,6 +26,7 @@ class HybridIntegrator final : public Integrator {
   std::string_view Name() const override { return "hybrid"; }
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
+  PreparationUse Preparation() const override { return plan_->Use(); }
   int DefaultPasses() const override { return 64; }
 
  private:

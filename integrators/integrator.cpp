@@ -1,5 +1,7 @@
 #include "integrators/integrator.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -41,6 +43,8 @@ PassStats& PassStats::operator+=(const PassStats& s) {
   gathers += s.gathers;
   photonsGathered += s.photonsGathered;
   splats += s.splats;
+  photonMaps += s.photonMaps;
+  photonMapBytes = std::max(photonMapBytes, s.photonMapBytes);
   return *this;
 }
 

@@ -28,9 +28,17 @@ struct PassStats {
   int64_t gathers = 0;          ///< photon map queries
   int64_t photonsGathered = 0;  ///< photons within reach of a query
   int64_t splats = 0;           ///< light path vertices joined to the camera
+  int64_t photonMaps = 0;       ///< that were built
+  int64_t photonMapBytes = 0;   ///< of the largest of them
 
   int64_t Rays() const { return cameraRays + shadowRays + photonRays; }
   PassStats& operator+=(const PassStats& s);
+};
+
+/// What `Prepare` needed beside the scene.
+struct PreparationUse {
+  TableUse tables;         ///< of what pilots learned
+  int64_t pilotPaths = 0;  ///< light paths that they began
 };
 
 /// Whose directions find direct light where a camera path scatters. Light of delta lights is sampled in any case.
@@ -71,6 +79,8 @@ class Integrator {
   virtual std::string_view Name() const = 0;
   /// The scene must outlive the integrator. Called once, before any pass.
   virtual void Prepare(const Scene& scene, uint64_t seed) = 0;
+  /// What that took; once prepared.
+  virtual PreparationUse Preparation() const { return {}; }
   /// Adds pass number `pass` (from 0) to the film. May be called in any order and for any set of passes.
   virtual PassStats RenderPass(int pass, Film& film) const = 0;
   /// Passes where neither the scene nor the user says how many.

@@ -10,8 +10,17 @@ int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options) {
 }
 
 PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, uint64_t seed)
-    : emission(scene, options.guideEmission ? LearnEmissionGuide(scene, options.maxDepth, seed) : EmissionGuide()),
+    // One scattering before the photon lands, one where it is gathered.
+    : isNeeded(scene.Facts().CanUsePhotons() && options.maxDepth >= 2),
+      emission(scene,
+               isNeeded && options.guideEmission ? LearnEmissionGuide(scene, options.maxDepth, seed) : EmissionGuide()),
       paths(LightPathsOfPass(scene, options)),
-      radius(scene, emission, paths, {options.maxDepth, options.radiusScale, options.radius, seed}) {}
+      radius(scene, emission, isNeeded ? paths : 0, {options.maxDepth, options.radiusScale, options.radius, seed}) {}
+
+PreparationUse PhotonPlan::Use() const {
+  if (!isNeeded) return {};
+  return {TableUse::Of(emission.Guide().MemoryBytes()) + TableUse::Of(radius.MemoryBytes()),
+          emission.Guide().PilotPhotons() + GatherRadius::kPilotPaths};
+}
 
 }  // namespace dapple

@@ -1,11 +1,14 @@
 // What integrators with photons share: the plan of their passes, and the photons of a pass.
 #pragma once
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "integrators/integrator.h"
 #include "src/photons/gather_radius.h"
 #include "src/photons/light_path.h"
+#include "src/photons/photon_map.h"
 
 namespace dapple {
 
@@ -17,6 +20,11 @@ struct PhotonPlan {
   /// Learned by pilots of fixed length, from scene, options and seed alone.
   PhotonPlan(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
 
+  PreparationUse Use() const;
+
+  /// False where no photon could be gathered: nothing emits, or nothing scatters in more than one direction, or paths
+  /// are too short. Then there are no pilots, and `ShootPhotons` shoots none.
+  bool isNeeded;
   EmissionSampler emission;
   int64_t paths;
   GatherRadius radius;
@@ -39,6 +47,7 @@ struct ShotPhotons {
 /// likes. The photons come in the order of the paths.
 template <typename Photon, typename Walk>
 ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass, Walk&& walk) {
+  if (!plan.isNeeded) return {};
   auto chunks = ForEachLightPath<ShotPhotons<Photon>>(
       plan.emission, seed, pass, plan.paths, [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
         ++chunk.stats.photonsEmitted;
@@ -57,6 +66,17 @@ ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass
   }
   all.stats.photonsStored += static_cast<int64_t>(count);
   return all;
+}
+
+/// The map of the photons, which is none where there are no photons. Adds what was done to `*stats`.
+template <typename Photon>
+PhotonMap<Photon> BuildPhotonMap(ShotPhotons<Photon> shot, PassStats* stats) {
+  *stats += shot.stats;
+  if (shot.positions.empty()) return {};
+  PhotonMap<Photon> map(std::move(shot.positions), std::move(shot.photons));
+  ++stats->photonMaps;
+  stats->photonMapBytes = std::max(stats->photonMapBytes, map.MemoryBytes());
+  return map;
 }
 
 }  // namespace dapple

@@ -46,8 +46,7 @@ SppmIntegrator::Map SppmIntegrator::TracePhotons(int pass, PassStats* stats) con
     };
     chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store);
   });
-  *stats += shot.stats;
-  return {std::move(shot.positions), std::move(shot.photons)};
+  return BuildPhotonMap(std::move(shot), stats);
 }
 
 Color SppmIntegrator::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,

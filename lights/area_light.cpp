@@ -60,6 +60,8 @@ AreaLight::AreaLight(const Shape* shape, ColorTexturePtr radiance, bool twoSided
   }
   const Distribution1D byArea{std::span<const double>(areas)};
   area_ = byArea.Sum();
+  // A black light is asked for nothing.
+  if (IsEvenlyBright() && EmittedAt(TextureContext()).IsBlack()) return;
   if (count > 1) byArea_ = byArea;
   meanRadiance_ = MeanRadiance();
   plane_ = FindPlane();

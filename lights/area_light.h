@@ -43,6 +43,9 @@ class AreaLight final : public Light {
 
   Color L(const SurfaceInteraction& hit, const Vec3& w) const override;
 
+  /// By area, of a shape of several primitives.
+  TableUse Tables() const override { return TableUse::Of(byArea_.MemoryBytes()); }
+
   /// Of one side, all primitives together.
   double Area() const { return area_; }
 

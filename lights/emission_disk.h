@@ -51,6 +51,9 @@ class EmissionDisks {
   /// The integral of the area over all directions.
   double AreaIntegral() const;
 
+  /// The grid of directions; none where the disks are those of the sphere.
+  TableUse Table() const { return TableUse::Of(static_cast<int64_t>(grid_.size() * sizeof(Cylinder))); }
+
   /// The disk for one direction alone: the smallest.
   static EmissionDisk Smallest(const SceneExtent& extent, const Vec3& w);
 

@@ -15,6 +15,7 @@ EnvironmentLight::EnvironmentLight(const Image& image, const Transform& lightToR
 
 void EnvironmentLight::Prepare(const SceneExtent& extent) {
   extent_ = {extent.center, extent.radius};
+  if (map_.IsBlack()) return;
   disks_ = EmissionDisks(extent);
   power_ = map_.IntegralTimes([this](const Vec3d& w) { return disks_.Area(ToDouble(ToRender(w))); });
 }
@@ -87,6 +88,7 @@ Color EnvironmentLight::Le(const Ray& ray) const { return map_.Radiance(ToMap(ra
 
 void UniformEnvironmentLight::Prepare(const SceneExtent& extent) {
   extent_ = {extent.center, extent.radius};
+  if (L_.IsBlack()) return;
   disks_ = EmissionDisks(extent);
   power_ = FiniteColor(L_, disks_.AreaIntegral());
 }

@@ -54,6 +54,9 @@ class EnvironmentLight final : public Light {
 
   Color Le(const Ray& ray) const override;
 
+  TableUse Tables() const override {
+    return map_.Tables() + disks_.Table() + (strategy_ ? strategy_->Tables() : TableUse());
+  }
   bool WantsReceiver() const override { return strategy_ && strategy_->WantsReceiver(); }
   std::shared_ptr<const ReceiverTable> PrepareReceiver(const LightContext&, const Bsdf& bsdf,
                                                        const Vec3& wo) const override {
@@ -100,6 +103,7 @@ class UniformEnvironmentLight final : public Light {
   LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
 
   Color Le(const Ray&) const override { return L_; }
+  TableUse Tables() const override { return disks_.Table(); }
 
  private:
   Color L_;

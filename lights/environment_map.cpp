@@ -1,5 +1,6 @@
 #include "lights/environment_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -62,6 +63,8 @@ EnvironmentMap::EnvironmentMap(const Image& image, EnvironmentMapping mapping, c
   }
   FillLattice(image, scale);
   FillHaversines();
+  // A black map is sampled by nobody.
+  if (std::all_of(lattice_.begin(), lattice_.end(), [](const Color& c) { return c.IsBlack(); })) return;
   base_ = MakeDensity(0);
   integral_ = IntegrateRadiance();
 }

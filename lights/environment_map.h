@@ -22,6 +22,7 @@
 #include "src/base/color.h"
 #include "src/image/image.h"
 #include "src/sampling/distribution.h"
+#include "src/sampling/table_use.h"
 
 namespace dapple {
 
@@ -84,6 +85,8 @@ class EnvironmentMap {
   Color IntegralTimes(const std::function<double(const Vec3d& w)>& factor) const;
   /// Of the tables; the image is not kept.
   int64_t MemoryBytes() const;
+  /// None where the map is black.
+  TableUse Tables() const { return IsBlack() ? TableUse() : TableUse::Of(MemoryBytes()); }
 
   /// Columns and rows of cells.
   Vec2i Cells() const { return {width_ + 1, height_ + 1}; }

@@ -78,6 +78,7 @@ class CompensatedStrategy final : public EnvironmentStrategy {
     u.direction = space_.map.Invert(DensityAt(at), space_.frame.ToLight(wi));
     return u;
   }
+  TableUse Tables() const override { return TableUse::Of(compensated_.table.MemoryBytes()); }
 
  private:
   static double Threshold(const EnvironmentSpace& space) {

@@ -31,6 +31,9 @@ class EnvironmentStrategy {
   /// The random numbers with which `Sample` gives `wi`.
   virtual LiRandom Invert(const LightContext& at, const Vec3& wi) const = 0;
 
+  /// Beside those of the map.
+  virtual TableUse Tables() const { return {}; }
+
   /// As of `Light`.
   virtual bool WantsReceiver() const { return false; }
   virtual std::shared_ptr<const ReceiverTable> PrepareReceiver(const Bsdf& /*bsdf*/, const Vec3& /*wo*/) const {

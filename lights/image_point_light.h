@@ -14,6 +14,7 @@ template <typename Map>
 class ImagePointLight : public Light {
  public:
   bool IsDelta() const override { return true; }
+  TableUse Tables() const override { return map_.Tables(); }
   /// The integral of the intensity over all directions.
   Color Power() const override { return map_.Integral(); }
   double ImportanceAt(const LightContext& at) const override {

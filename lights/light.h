@@ -15,6 +15,7 @@
 #include "src/base/color.h"
 #include "src/geometry/interaction.h"
 #include "src/geometry/ray.h"
+#include "src/sampling/table_use.h"
 
 namespace dapple {
 
@@ -145,6 +146,9 @@ class Light {
                                                                const Vec3& /*wo*/) const {
     return nullptr;
   }
+  /// The tables that it has built to be sampled.
+  virtual TableUse Tables() const { return {}; }
+
   /// How many directions next-event estimation draws where it has picked this light; at least 1.
   int SampleCount() const { return sampleCount_; }
   void SetSampleCount(int count) { sampleCount_ = count; }

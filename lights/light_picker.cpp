@@ -7,6 +7,7 @@ namespace dapple {
 
 LightPicker::LightPicker(const std::vector<std::unique_ptr<Light>>& lights)
     : lightCount_(static_cast<int>(lights.size())) {
+  if (lightCount_ < 2) return;
   std::vector<double> powers;
   powers.reserve(lights.size());
   double sum = 0;
@@ -20,13 +21,16 @@ LightPicker::LightPicker(const std::vector<std::unique_ptr<Light>>& lights)
 }
 
 PickedLight LightPicker::PickByPower(double u) const {
+  if (lightCount_ < 2) return {lightCount_ - 1, static_cast<double>(lightCount_), u};
   const DiscreteSample drawn = byPower_.SampleDiscrete(u);
   return {drawn.index, drawn.probability, drawn.u};
 }
 
-double LightPicker::ProbabilityByPower(int light) const { return byPower_.Probability(light); }
+double LightPicker::ProbabilityByPower(int light) const { return lightCount_ < 2 ? 1 : byPower_.Probability(light); }
 
-double LightPicker::InvertByPower(int light, double u) const { return byPower_.InvertDiscrete(light, u); }
+double LightPicker::InvertByPower(int light, double u) const {
+  return lightCount_ < 2 ? u : byPower_.InvertDiscrete(light, u);
+}
 
 bool LightPicker::Weigh(const LightContext& at, double (&probability)[kMostWeighed]) const {
   if (lights_.size() < 2) return false;

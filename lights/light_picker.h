@@ -41,13 +41,16 @@ class LightPicker {
 
   static constexpr int kMostWeighed = 32;
 
+  /// None where there is nothing to choose.
+  TableUse Tables() const { return TableUse::Of(byPower_.MemoryBytes()); }
+
  private:
   /// The lights' probabilities at a point; false where they are to be chosen by power.
   bool Weigh(const LightContext& at, double (&probability)[kMostWeighed]) const;
 
   int lightCount_ = 0;
   std::vector<const Light*> lights_;  // empty where there are too many to weigh
-  Distribution1D byPower_;
+  Distribution1D byPower_;            // empty for a single light
 };
 
 }  // namespace dapple

@@ -207,4 +207,10 @@ LiRandom ProductStrategy::Invert(const LightContext& at, const Vec3& wi) const {
   return u;
 }
 
+TableUse ProductStrategy::Tables() const {
+  int64_t bytes = pyramid_.MemoryBytes();
+  for (const std::vector<Vec3>& level : directions_) bytes += static_cast<int64_t>(level.size() * sizeof(Vec3));
+  return TableUse::Of(bytes);
+}
+
 }  // namespace dapple

@@ -26,6 +26,8 @@ class ProductStrategy final : public EnvironmentStrategy {
   double Pdf(const LightContext& at, const Vec3& wi) const override;
   LiRandom Invert(const LightContext& at, const Vec3& wi) const override;
 
+  TableUse Tables() const override;
+
   bool WantsReceiver() const override { return true; }
   std::shared_ptr<const ReceiverTable> PrepareReceiver(const Bsdf& bsdf, const Vec3& wo) const override;
 

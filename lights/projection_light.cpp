@@ -1,5 +1,6 @@
 #include "lights/projection_light.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -62,7 +63,8 @@ ProjectionMap::ProjectionMap(const Image& image, double fovDegrees, const Color&
   columns_ = CellBorders(width_, extent_.x);
   rows_ = CellBorders(height_, extent_.y);
   FillTexels(image, scale);
-  BuildTable();
+  // A black map is sampled by nobody.
+  if (std::any_of(texels_.begin(), texels_.end(), [](const Color& c) { return !c.IsBlack(); })) BuildTable();
 }
 
 void ProjectionMap::FillTexels(const Image& image, const Color& scale) {
@@ -184,6 +186,12 @@ Vec2d ProjectionMap::Invert(const Vec3d& w) const {
   double weights[4];
   Weights(place.cell, weights);
   return table_.InvertDiscrete(place.cell, InvertBilinear(place.s, weights));
+}
+
+TableUse ProjectionMap::Tables() const {
+  if (IsBlack()) return {};
+  return TableUse::Of(table_.MemoryBytes() + static_cast<int64_t>(texels_.size() * sizeof(Color) +
+                                                                  (columns_.size() + rows_.size()) * sizeof(double)));
 }
 
 }  // namespace dapple

@@ -59,6 +59,8 @@ class ProjectionMap {
   Vec2d Invert(const Vec3d& w) const;
   /// The integral of the intensity over all directions (of the lookup, to 1e-9 of it).
   Color Integral() const { return integral_; }
+  /// None where the map is black.
+  TableUse Tables() const;
 
  private:
   /// A point of the plane as a cell and a place in it.

@@ -23,6 +23,11 @@ class StructuredStrategy final : public EnvironmentStrategy {
   double Pdf(const LightContext& at, const Vec3& wi) const override;
   LiRandom Invert(const LightContext& at, const Vec3& wi) const override;
 
+  TableUse Tables() const override {
+    return TableUse::Of(pyramid_.MemoryBytes() + byRank_.MemoryBytes() +
+                        static_cast<int64_t>(ranks_.size() * sizeof(int) + blocks_.size() * sizeof(Vec2i)));
+  }
+
   int StratumCount() const { return strata_; }
 
  private:

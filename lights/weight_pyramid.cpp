@@ -125,4 +125,10 @@ Vec2d WeightPyramid::Invert(int level, const Vec2i& cell, Vec2d u) const {
   return u;
 }
 
+int64_t WeightPyramid::MemoryBytes() const {
+  int64_t bytes = 0;
+  for (const Level& level : levels_) bytes += static_cast<int64_t>(level.weights.size() * sizeof(float));
+  return bytes;
+}
+
 }  // namespace dapple

@@ -52,6 +52,7 @@ class WeightPyramid {
   PyramidNode Root() const { return {static_cast<int>(levels_.size()) - 1, {0, 0}}; }
   /// Nodes of a level that hold any cell.
   Vec2i Size(int level) const { return levels_[static_cast<size_t>(level)].size; }
+  int64_t MemoryBytes() const;
   /// The sum below a node as a share of the largest cell's weight; 0 beyond the border.
   double Weight(const PyramidNode& node) const;
 

@@ -58,7 +58,18 @@ void PrintStart(const RenderOptions& options, const Scene& scene, const RenderPl
              plan.choice.reason, FormatNumberOf(ThreadCount(), "thread", "threads"));
 }
 
-void PrintSummary(const RenderResult& result, const Film& film) {
+void PrintNeeds(const RenderNeeds& needs, const PassStats& stats) {
+  const auto bytes = [](int64_t n) { return FormatBytes(static_cast<double>(n)); };
+  const SceneResources& scene = needs.scene;
+  const TableUse tables = AllTables(needs);
+  fmt::print("held      geometry {}; {} ({}); {} ({})", bytes(scene.geometryBytes),
+             FormatNumberOf(tables.count, "table", "tables"), bytes(tables.bytes),
+             FormatNumberOf(scene.images.opened, "image file", "image files"), bytes(scene.images.bytes));
+  if (stats.photonMaps > 0) fmt::print("; a photon map of up to {}", bytes(stats.photonMapBytes));
+  fmt::print("\n");
+}
+
+void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Film& film) {
   const PassStats& stats = result.stats;
   const auto count = [](int64_t n) { return FormatCount(static_cast<double>(n)); };
   fmt::print("{} in {} (of which preparation {})\n", FormatNumberOf(result.passes, "pass", "passes"),
@@ -67,8 +78,9 @@ void PrintSummary(const RenderResult& result, const Film& film) {
              Rate(stats.Rays(), result.seconds), count(stats.cameraRays), count(stats.shadowRays),
              count(stats.photonRays));
   if (stats.photonsEmitted > 0) {
-    fmt::print("photons   {} emitted ({}), {} stored\n", count(stats.photonsEmitted),
-               Rate(stats.photonsEmitted, result.seconds), count(stats.photonsStored));
+    fmt::print("photons   {} emitted ({}), {} stored; {} more in pilots\n", count(stats.photonsEmitted),
+               Rate(stats.photonsEmitted, result.seconds), count(stats.photonsStored),
+               count(needs.preparation.pilotPaths));
   }
   if (stats.gathers > 0) {
     fmt::print("gathers   {}, {:.3g} photons each\n", count(stats.gathers),
@@ -76,6 +88,7 @@ void PrintSummary(const RenderResult& result, const Film& film) {
   }
   if (stats.splats > 0) fmt::print("splats    {}\n", count(stats.splats));
   if (const auto noise = film.NoiseEstimate()) fmt::print("noise     relative MSE about {:.2g}\n", *noise);
+  PrintNeeds(needs, stats);
   fmt::print("memory    {} at its peak\n", FormatBytes(static_cast<double>(PeakMemoryBytes())));
 }
 
@@ -145,9 +158,11 @@ int RunRender(RenderOptions options) {
   const RenderRecord record = MakeRecord(options, plan, origin, result, film);
   WriteRenderOutputs(options.outputs, origin, record, film);
   if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
-  if (!options.statistics.empty()) WriteFileAtomically(options.statistics, StatisticsToJson(record, result, film));
+  const RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
+  if (!options.statistics.empty())
+    WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film));
   WarnOfNonFinite(film);
-  if (!options.isQuiet) PrintSummary(result, film);
+  if (!options.isQuiet) PrintSummary(result, needs, film);
   return result.stopped ? 128 + signals.Signal() : kExitSuccess;
 }
 

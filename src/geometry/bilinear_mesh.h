@@ -22,6 +22,10 @@ class BilinearMesh final : public Shape {
   const std::vector<int>& Indices() const { return indices_; }
 
   int PrimitiveCount() const override { return static_cast<int>(indices_.size() / 4); }
+  int64_t MemoryBytes() const override {
+    return static_cast<int64_t>((positions_.size() + normals_.size()) * sizeof(Vec3) + uvs_.size() * sizeof(Vec2) +
+                                indices_.size() * sizeof(int));
+  }
   Bounds3 PrimitiveBounds(int primitive) const override;
   void AppendHull(std::vector<HullBall>* hull) const override;
   /// Reshetov 2019, "Cool patches"; in double.

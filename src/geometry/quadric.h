@@ -14,6 +14,7 @@ namespace dapple {
 class Quadric : public Shape {
  public:
   int PrimitiveCount() const override { return 1; }
+  int64_t MemoryBytes() const override { return sizeof(Quadric); }
 
   PrimitiveHits IntersectAll(const Ray& ray, int primitive) const override;
   SurfaceInteraction Interact(const Ray& ray, const PrimitiveHit& hit) const override;

@@ -6,6 +6,7 @@
 // instanced.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -61,6 +62,8 @@ class Shape {
   virtual std::optional<Ball> AsBall() const { return std::nullopt; }
 
   virtual int PrimitiveCount() const = 0;
+  /// Of its vertices and indices, or whatever it keeps.
+  virtual int64_t MemoryBytes() const = 0;
   virtual Bounds3 PrimitiveBounds(int primitive) const = 0;
   /// Adds balls whose convex hull holds the shape: its vertices where it has them.
   virtual void AppendHull(std::vector<HullBall>* hull) const = 0;

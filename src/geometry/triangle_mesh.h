@@ -32,6 +32,9 @@ class TriangleMesh final : public Shape {
   int VertexStride() const { return stride_; }
 
   int PrimitiveCount() const override { return static_cast<int>(indices_.size() / 3); }
+  int64_t MemoryBytes() const override {
+    return static_cast<int64_t>(vertices_.size() * sizeof(float) + indices_.size() * sizeof(int));
+  }
   Bounds3 PrimitiveBounds(int primitive) const override;
   void AppendHull(std::vector<HullBall>* hull) const override;
   PrimitiveHits IntersectAll(const Ray& ray, int primitive) const override;

@@ -88,11 +88,17 @@ double PbrtUpperIlluminance(const Image& map) {
   return sum * 2 * kPiD / (static_cast<double>(map.Width()) * map.Height());
 }
 
-/// The image that a light shines by, fit for it. Square in pbrt-v4 where it is of the sphere.
-Image ReadEmission(const Values& values, const Parameter& fileName, bool isOfSphere) {
+/// One white pixel where the light has no image.
+Image WhitePixel() { return {1, 1, {"Y"}, {1.f}}; }
+
+/// The image that a light shines by, fit for it; square in pbrt-v4 where it is of the sphere. White where `fileName` is
+/// null, and where `factor`, by which it is multiplied, is black: then no file is opened.
+Image ReadEmission(Values& values, const Parameter* fileNameOrNull, const Color& factor, bool isOfSphere) {
+  if (!fileNameOrNull || factor.IsBlack()) return WhitePixel();
+  const Parameter& fileName = *fileNameOrNull;
   const BuildContext& context = values.Context();
   // Not through the cache, whose repair would put out an infinitely bright sun.
-  const Image file = ReadImage(values.FilePath(fileName), ColorEncoding::SRgb(), fileName.location);
+  const Image file = values.ReadImageOnce(fileName, ColorEncoding::SRgb());
   if (isOfSphere && !context.IsV3() && file.Width() != file.Height())
     throw Error(fileName.location,
                 fmt::format("environment map \"{}\" is of {} x {} pixels, expected a square one: pbrt-v4 maps are "
@@ -148,15 +154,12 @@ EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
   return options;
 }
 
-/// One white pixel where the light has no image.
-Image WhitePixel() { return {1, 1, {"Y"}, {1.f}}; }
-
 std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescription& light, const Parameter& fileName,
                                            const EnvironmentOptions& options) {
   const BuildContext& context = values.Context();
   const bool isV3 = context.IsV3();
-  const Image map = ReadEmission(values, fileName, true);
   Color scale = isV3 ? GetEmission(values, light, "L") : GetScale(values, light);
+  const Image map = ReadEmission(values, &fileName, scale, true);
   if (!isV3 && light.params.Has("illuminance"))
     scale *= TargetFactor(context, light, "illuminance", PbrtUpperIlluminance(map));
   return std::make_unique<EnvironmentLight>(map, context.renderFromWorld * light.worldFromLight, scale,
@@ -204,13 +207,14 @@ Image AverageOfColors(const Image& image) {
 std::unique_ptr<Light> BuildGoniometric(Values& values, const LightDescription& light) {
   const BuildContext& context = values.Context();
   const Parameter* fileName = light.params.Find(context.IsV3() ? "mapname" : "filename");
-  Image image = fileName ? ReadEmission(values, *fileName, true) : WhitePixel();
+  const Color factor = GetEmission(values, light, "I");
+  Image image = ReadEmission(values, fileName, factor, true);
   if (!context.IsV3()) image = AverageOfColors(image);
   // The map's z, around which its angles run, is the light's y.
   const Transform lightFromMap = Transform::FromRows({1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1});
   const Transform renderFromLight = context.renderFromWorld * light.worldFromLight;
   const Vec3 position = ToFloat(renderFromLight.Point(Vec3d(0)));
-  return BuildToPower(context, light, GetEmission(values, light, "I"), [&](const Color& scale) {
+  return BuildToPower(context, light, factor, [&](const Color& scale) {
     return std::make_unique<GoniometricLight>(position, renderFromLight * lightFromMap, image, MappingOf(context),
                                               scale);
   });
@@ -222,13 +226,13 @@ std::unique_ptr<Light> BuildProjection(Values& values, const LightDescription& l
   const Parameter* fileName = light.params.Find(isV3 ? "mapname" : "filename");
   if (!fileName && !isV3)
     throw Error(light.location, "light \"projection\" has no image, expected \"filename\" to name one");
-  const Image image = fileName ? ReadEmission(values, *fileName, false) : WhitePixel();
+  const Color factor = isV3 ? GetEmission(values, light, "I") : GetScale(values, light);
+  const Image image = ReadEmission(values, fileName, factor, false);
   const double fov = light.params.GetFloat("fov", isV3 ? 45 : 90);
   // pbrt-v3 has the top of the image at -y.
   const Transform lightFromMap = Transform::Scale({1, isV3 ? -1. : 1., 1});
   const Transform renderFromLight = context.renderFromWorld * light.worldFromLight;
   const Vec3 position = ToFloat(renderFromLight.Point(Vec3d(0)));
-  const Color factor = isV3 ? GetEmission(values, light, "I") : GetScale(values, light);
   return BuildToPower(context, light, factor, [&](const Color& scale) {
     return AtLocation(light.params.LocationOf("fov", light.location), [&] {
       return std::make_unique<ProjectionLight>(position, renderFromLight * lightFromMap, image, fov, scale);
@@ -291,10 +295,10 @@ std::unique_ptr<Light> BuildAreaLight(Values& values, const Entity& light, const
   const ShapeArea extent = AreaOf(shape);
   const double reachedEach = kPiD * (twoSided ? 2 : 1) * extent.area / std::max(1, extent.primitives);
   const Parameter* fileName = context.IsV3() ? nullptr : light.params.Find("filename");
+  if (fileName && light.params.Has("L"))
+    throw Error(fileName->location, "both \"L\" and \"filename\" are given, expected one of them");
   ColorTexturePtr radiance;
-  if (fileName) {
-    if (light.params.Has("L"))
-      throw Error(fileName->location, "both \"L\" and \"filename\" are given, expected one of them");
+  if (fileName && !GetScale(values, light).IsBlack()) {
     double luminance = 0;
     BuildEmissionImage(values, *fileName, Color(1), &luminance);
     const Color scale = GetScale(values, light) * TargetFactor(context, light, "power", luminance * reachedEach);

@@ -37,7 +37,10 @@ class Assembler {
     for (const InstanceDescription& instance : context_.description.instances) AddInstance(instance);
   }
 
-  void Finish() { parts_->materials = materials_.Take(); }
+  void Finish() {
+    parts_->materials = materials_.Take();
+    parts_->images = values_.Images();
+  }
 
  private:
   struct Group {

@@ -181,4 +181,10 @@ std::shared_ptr<const Image> Values::GetImage(const Parameter& fileName, ColorEn
   return images_.Get(FilePath(fileName), encoding, fileName.location);
 }
 
+Image Values::ReadImageOnce(const Parameter& fileName, ColorEncoding encoding) {
+  Image image = ReadImage(FilePath(fileName), encoding, fileName.location);
+  ++readOnce_;
+  return image;
+}
+
 }  // namespace dapple

@@ -12,6 +12,7 @@
 #include "src/materials/image_texture.h"
 #include "src/materials/spectrum.h"
 #include "src/materials/texture.h"
+#include "src/scene/scene_resources.h"
 
 namespace dapple {
 
@@ -52,6 +53,10 @@ class Values {
   std::string FilePath(const Parameter& fileName) const;
   /// The image that a parameter names, fit for textures (`ImageCache::Get`).
   std::shared_ptr<const Image> GetImage(const Parameter& fileName, ColorEncoding encoding);
+  /// The same as it stands in the file, for one use.
+  Image ReadImageOnce(const Parameter& fileName, ColorEncoding encoding);
+  /// Image files that were opened so far, and the bytes of those that are kept.
+  ImageUse Images() const { return {images_.OpenedCount() + readOnce_, images_.MemoryBytes()}; }
 
  private:
   ColorTexturePtr ColorTextureAt(const Parameter& parameter);
@@ -61,6 +66,7 @@ class Values {
 
   const BuildContext& context_;
   ImageCache images_;
+  int readOnce_ = 0;
   std::vector<ColorTexturePtr> colorTextures_;  // by index of the description; null: not built yet
   std::vector<FloatTexturePtr> floatTextures_;
 };

@@ -82,4 +82,11 @@ std::shared_ptr<const Image> ImageCache::Get(const std::string& path, ColorEncod
   return entries.back().image;
 }
 
+int64_t ImageCache::MemoryBytes() const {
+  int64_t bytes = 0;
+  for (const auto& [path, entries] : entries_)
+    for (const Entry& entry : entries) bytes += static_cast<int64_t>(entry.image->Values().size_bytes());
+  return bytes;
+}
+
 }  // namespace dapple

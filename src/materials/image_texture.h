@@ -83,6 +83,8 @@ class ImageCache {
   std::shared_ptr<const Image> Get(const std::string& path, ColorEncoding encoding, const FileLocation& location = {});
   /// How many files have been opened.
   int OpenedCount() const { return openedCount_; }
+  /// Of the images that it gave.
+  int64_t MemoryBytes() const;
 
  private:
   struct Entry {

@@ -56,7 +56,8 @@ bool HasCells(const Distribution2D& table) { return table.Height() > 0; }
 
 }  // namespace
 
-EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot) {
+EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot)
+    : pilotPhotons_(static_cast<int64_t>(pilot.size())) {
   struct Learned {
     Histogram position, direction;
     double emitted = 0, useful = 0;

@@ -52,6 +52,8 @@ class EmissionGuide {
   LeRandom Unbend(int light, const LeRandom& own) const;
 
   int64_t MemoryBytes() const;
+  /// Of the pilot that taught it; 0 without one.
+  int64_t PilotPhotons() const { return pilotPhotons_; }
 
  private:
   struct LightTables {
@@ -60,6 +62,7 @@ class EmissionGuide {
 
   std::vector<LightTables> lights_;
   Distribution1D byUse_;
+  int64_t pilotPhotons_ = 0;
 };
 
 }  // namespace dapple

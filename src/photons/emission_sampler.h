@@ -47,6 +47,8 @@ class EmissionSampler {
   /// The random numbers with which `Sample` gives this ray of this light.
   LeRandom Inverse(int light, const Ray& ray, const Vec3& n) const;
 
+  const EmissionGuide& Guide() const { return guide_; }
+
  private:
   const Scene* scene_;
   EmissionGuide guide_;

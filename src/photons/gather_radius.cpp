@@ -13,17 +13,16 @@ namespace dapple {
 
 namespace {
 
-constexpr int64_t kPilotPaths = 1 << 16;
-
 /// Where the light paths of the pilot leave photons.
 std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed) {
   using Positions = std::vector<Vec3>;
-  const auto chunks = ForEachLightPath<Positions>(
-      emission, seed, 0, kPilotPaths, [&](const EmissionSample& emitted, const Sampler& sampler, Positions& chunk) {
-        TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
-          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) chunk.push_back(v.hit.p);
-        });
-      });
+  const auto chunks =
+      ForEachLightPath<Positions>(emission, seed, 0, GatherRadius::kPilotPaths,
+                                  [&](const EmissionSample& emitted, const Sampler& sampler, Positions& chunk) {
+                                    TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
+                                      if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) chunk.push_back(v.hit.p);
+                                    });
+                                  });
   Positions all;
   for (const Positions& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
   return all;
@@ -34,6 +33,7 @@ std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission
 GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options)
     : scale_(static_cast<float>(options.scale)), camera_(scene.GetCamera().Position()), unit_(scene.Extent().radius) {
   if (options.fixed) fixed_ = static_cast<float>(*options.fixed);
+  if (paths == 0) return;
   const Vec2i& resolution = scene.Settings().resolution;
   const Vec2 middle(static_cast<float>(resolution.x) / 2, static_cast<float>(resolution.y) / 2);
   const CameraRay camera = scene.GetCamera().GenerateRay(middle, Vec2d(0.5), 0.5);

@@ -29,11 +29,15 @@ class GatherRadius {
     std::optional<double> fixed;  ///< one radius for all places, in scene units
     uint64_t seed = 0;
   };
-  /// Learns for passes of `paths` light paths. Depends on the arguments alone.
+  /// Learns for passes of `paths` light paths, by `kPilotPaths` of its own; where there are none it learns nothing.
+  /// Depends on the arguments alone.
   GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options);
 
   GatherForecast At(const Vec3& p) const;
 
+  int64_t MemoryBytes() const { return static_cast<int64_t>(cells_.size() * sizeof(Cell)); }
+
+  static constexpr int64_t kPilotPaths = 1 << 16;
   static constexpr double kPhotons = 16;
   static constexpr double kMaxPixels = 2;
   static constexpr double kMinPixels = 1;
@@ -60,7 +64,7 @@ class GatherRadius {
   Vec3 camera_{0};
   float unit_ = 1;  // the scene's radius: cells are cut in these units from the camera, so that no scale matters
   float widestAtLens_ = 0, widestSpread_ = 0;
-  std::vector<Cell> cells_;  // a hash table with open addressing, a power of two long
+  std::vector<Cell> cells_ = std::vector<Cell>(1);  // a hash table with open addressing, a power of two long
 };
 
 }  // namespace dapple

@@ -8,9 +8,22 @@
 
 namespace dapple {
 
+/// What a render needed beside rays: of its scene, and of its integrator's preparation.
+struct RenderNeeds {
+  SceneResources scene;
+  PreparationUse preparation;
+};
+
 /// One object: the record's fields, "version", "instructionSet", "seconds" and "prepareSeconds" (wall clock), "rays" by
-/// kind, "photons" (emitted, stored), "gathers" (count, photons within reach), "splats", "nonFinite" (samples refused
-/// by the film) and "noise" (estimated relative MSE; null before two passes). Ends with a line end.
-std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const Film& film);
+/// kind, "photons" (emitted, stored; begun in pilots), "photonMaps" (built, bytes of the largest), "gathers" (count,
+/// photons within reach), "splats", "tables" (how many of the environment, of other lights, of the choice among lights,
+/// of what pilots learned; bytes of all), "textures" (image files opened, bytes that are kept), "geometry" (bytes),
+/// "nonFinite" (samples refused by the film) and "noise" (estimated relative MSE; null before two passes). Ends with a
+/// line end.
+std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const RenderNeeds& needs,
+                             const Film& film);
+
+/// All tables that a render built.
+TableUse AllTables(const RenderNeeds& needs);
 
 }  // namespace dapple

@@ -75,6 +75,9 @@ Scene::Scene(SceneParts parts)
   std::optional<Outline> outline;
   if (needsOutline) outline.emplace(entries, parts.groups, parts.instances);
   PrepareLights({extent_.center, extent_.radius, outline ? &*outline : nullptr});
+  resources_.images = parts.images;
+  resources_.geometryBytes = accelerator_->MemoryBytes();
+  for (const ScenePrimitive& primitive : primitives_) resources_.geometryBytes += primitive.shape->MemoryBytes();
   AddGeometry(primitives_, materials_, &facts_);
   AddLights(lights_, extent_.center, &facts_);
 }
@@ -98,6 +101,7 @@ void Scene::PrepareLights(const SceneExtent& extent) {
   std::vector<int> newIndex(lights_.size(), -1);
   for (size_t i = 0; i < lights_.size(); ++i) {
     lights_[i]->Prepare(extent);
+    (lights_[i]->IsInfinite() ? resources_.environmentTables : resources_.lightTables) += lights_[i]->Tables();
     if (!(lights_[i]->Power().MaxComponent() > 0)) {
       ++facts_.blackLights;
       continue;
@@ -113,6 +117,7 @@ void Scene::PrepareLights(const SceneExtent& extent) {
     if (lights_[i]->WantsReceiver()) lightsThatWantReceivers_.push_back(lights_[i].get());
   }
   picker_ = std::make_unique<LightPicker>(lights_);
+  resources_.choiceTables = picker_->Tables();
 }
 
 Ray Scene::ShadowRay(const SurfaceInteraction& from, const LiSample& to) const {

@@ -15,6 +15,7 @@
 #include "src/scene/camera.h"
 #include "src/scene/render_settings.h"
 #include "src/scene/scene_facts.h"
+#include "src/scene/scene_resources.h"
 
 namespace dapple {
 
@@ -36,6 +37,7 @@ struct SceneParts {
   std::unique_ptr<Camera> camera;
   RenderSettings settings;
   Transform renderToWorld;
+  ImageUse images;  ///< that were opened for the parts
 };
 
 /// Tracing is safe from any number of threads.
@@ -72,6 +74,8 @@ class Scene {
   /// What the scene says about its rendering, and what it has.
   const RenderSettings& Settings() const { return settings_; }
   const SceneFacts& Facts() const { return facts_; }
+  /// What it had to build for that; of the lights, those that emit nothing too.
+  const SceneResources& Resources() const { return resources_; }
   /// A sphere around all that can be hit.
   const SceneExtent& Extent() const { return extent_; }
   /// From render space to the file's world.
@@ -93,6 +97,7 @@ class Scene {
   std::unique_ptr<LightPicker> picker_;
   SceneExtent extent_;
   SceneFacts facts_;
+  SceneResources resources_;
 };
 
 }  // namespace dapple

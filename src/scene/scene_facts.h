@@ -34,6 +34,8 @@ struct SceneFacts {
 
   /// False: the image is black.
   bool EmitsLight() const { return lights > 0; }
+  /// Light that was scattered before can land on something that scatters it on in more than one direction.
+  bool CanUsePhotons() const { return EmitsLight() && hasNonSpecular; }
   /// A specular surface and something that can receive what it throws.
   bool MayHaveCaustics() const { return EmitsLight() && hasSpecular && hasNonSpecular; }
 };
