@@ -2,6 +2,7 @@
 
 #include "integrators/pixel_loop.h"
 #include "src/base/error.h"
+#include "src/photons/coverage.h"
 #include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
 #include "src/photons/same_surface.h"
@@ -52,26 +53,25 @@ HybridIntegrator::HybridIntegrator(const IntegratorOptions& options) : options_(
 void HybridIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
-  plan_.emplace(scene, options_, seed);
+  plan_.emplace(scene, options_, 0, seed);
 }
 
 HybridIntegrator::MergeSite HybridIntegrator::SiteAt(const Vec3& p, const Merging& merging) const {
   const GatherForecast forecast = plan_->radius.At(p);
   const double factorSquared = Sqr(static_cast<double>(merging.radiusFactor));
-  // The Epanechnikov kernel's variance is that of a disk of 3/4 the area.
   return {forecast.radius * merging.radiusFactor,
-          static_cast<double>(plan_->paths) * (0.75 * kPiD) * Sqr(static_cast<double>(forecast.radius)) * factorSquared,
+          static_cast<double>(plan_->paths) *
+              Kernel::EffectiveArea(options_.kernel, static_cast<double>(forecast.radius)) * factorSquared,
           static_cast<double>(forecast.photons) * factorSquared};
 }
 
 PassStats HybridIntegrator::RenderPass(int pass, Film& film) const {
   Merging merging{RadiusFactor(pass), {}};
   PassStats stats = ShootPhotons(pass, &merging);
-  stats += ForEachPixel(film, [&](const Vec2i& pixel, PassStats& tileStats) {
-    Sampler sampler = Sampler::ForPixel(seed_, pixel, pass);
-    const PixelSample sample = SamplePixel(*scene_, film, pixel, sampler);
-    film.AddSample(pixel, Radiance(sample.camera.ray, merging, sampler, tileStats) * sample.weight, pass);
-  });
+  const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
+    return Radiance(camera.ray, merging, sampler, tileStats);
+  };
+  stats += RenderPixels(*scene_, seed_, pass, plan_->cameraSamples, radiance, film);
   film.FinishPass(pass);
   return stats;
 }
@@ -192,7 +192,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
     const MergeSite site = bsdf.IsPurelySpecular() ? MergeSite{} : SiteAt(hit->p, merging);
     if (!bsdf.IsPurelySpecular()) {
       if (sampler.Get1D() < walk.mergeProbability)
-        radiance += walk.throughput * Merge(walk, merging, site, *hit, bsdf, stats);
+        radiance += walk.throughput * Merge(walk, merging, site, *hit, bsdf, sampler.BlockSeed(), stats);
       radiance += walk.throughput * SampleDirectLight(walk, site, *hit, bsdf, sampler, stats);
     }
 
@@ -269,9 +269,9 @@ Color HybridIntegrator::SampleDirectLight(const CameraWalk& walk, const MergeSit
 }
 
 Color HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at,
-                              const SurfaceInteraction& hit, const Bsdf& bsdf, PassStats& stats) const {
+                              const SurfaceInteraction& hit, const Bsdf& bsdf, uint64_t seed, PassStats& stats) const {
   ++stats.gathers;
-  const EpanechnikovKernel kernel(at.radius);
+  const Kernel kernel(options_.kernel, at.radius);
   const GatherSite site(hit.p, hit.ng, hit.wo, at.radius, bsdf.Flags().HasTransmission());
   const double eta = at.eta * walk.mergeProbability, before = walk.weights.Before().merging;
   Color sum;
@@ -292,6 +292,7 @@ Color HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, co
     if (before > 0) others += static_cast<double>(bsdf.Pdf(wi, hit.wo, TransportMode::Importance)) * before;
     sum += value * (kernel(distanceSquared) / cosine * static_cast<float>(at.eta / (eta + others)));
   });
+  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, site, options_.kernel, seed, &stats.probeRays);
   return sum / static_cast<float>(plan_->paths);
 }
 

@@ -75,7 +75,7 @@ class HybridIntegrator final : public Integrator {
   double LightPdf(const LightContext& at, int light, const Vec3& wi, const SurfaceInteraction* hit) const;
   /// Radiance of the photons within the radius, with their weights.
   Color Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
-              const Bsdf& bsdf, PassStats& stats) const;
+              const Bsdf& bsdf, uint64_t seed, PassStats& stats) const;
 
   class LightWalk;
 

@@ -8,6 +8,7 @@
 #include "integrators/hybrid.h"
 #include "integrators/light_tracing.h"
 #include "integrators/path.h"
+#include "integrators/photon_mapping.h"
 #include "integrators/sppm.h"
 #include "src/base/error.h"
 
@@ -19,6 +20,8 @@ template <typename T>
 std::string ToText(const std::optional<T>& value) {
   return value ? fmt::format("{}", *value) : "automatic";
 }
+
+std::string ToText(KernelShape kernel) { return kernel == KernelShape::Cone ? "cone" : "epanechnikov"; }
 
 std::string ToText(DirectTechnique technique) {
   switch (technique) {
@@ -38,6 +41,7 @@ PassStats& PassStats::operator+=(const PassStats& s) {
   cameraRays += s.cameraRays;
   shadowRays += s.shadowRays;
   photonRays += s.photonRays;
+  probeRays += s.probeRays;
   photonsEmitted += s.photonsEmitted;
   photonsStored += s.photonsStored;
   gathers += s.gathers;
@@ -50,24 +54,28 @@ PassStats& PassStats::operator+=(const PassStats& s) {
 
 std::vector<std::pair<std::string, std::string>> DescribeOptions(const IntegratorOptions& options) {
   // All members by name: one that is added and not told here does not compile.
-  const auto& [maxDepth, photonsPerPass, radius, radiusScale, guideEmission, direct] = options;
+  const auto& [maxDepth, photonsPerPass, radius, radiusScale, kernel, guideEmission, direct] = options;
   const auto& [technique, lightSamples] = direct;
   return {
       {"max-depth", fmt::format("{}", maxDepth)},
       {"photons", ToText(photonsPerPass)},
       {"radius", ToText(radius)},
       {"radius-scale", fmt::format("{}", radiusScale)},
+      {"kernel", ToText(kernel)},
       {"guide", guideEmission ? "on" : "off"},
       {"direct", ToText(technique)},
       {"light-samples", ToText(lightSamples)},
   };
 }
 
-std::vector<std::string_view> IntegratorNames() { return {"path", "light_tracing", "sppm", "hybrid"}; }
+std::vector<std::string_view> IntegratorNames() {
+  return {"path", "light_tracing", "photon_mapping", "sppm", "hybrid"};
+}
 
 std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const IntegratorOptions& options) {
   if (name == "path") return std::make_unique<PathIntegrator>(options);
   if (name == "light_tracing") return std::make_unique<LightTracingIntegrator>(options);
+  if (name == "photon_mapping") return std::make_unique<PhotonMappingIntegrator>(options);
   if (name == "sppm") return std::make_unique<SppmIntegrator>(options);
   if (name == "hybrid") return std::make_unique<HybridIntegrator>(options);
   throw Error(fmt::format("unknown integrator \"{}\"; expected auto, {}", name, fmt::join(IntegratorNames(), ", ")));

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "src/image/film.h"
+#include "src/photons/kernel.h"
 #include "src/scene/scene.h"
 
 namespace dapple {
@@ -23,6 +24,7 @@ struct PassStats {
   int64_t cameraRays = 0;      ///< segments traced from the camera, bounces included
   int64_t shadowRays = 0;      ///< visibility tests of connections
   int64_t photonRays = 0;      ///< segments traced from the lights
+  int64_t probeRays = 0;       ///< short segments that ask how much of a gather's disk its surface fills
   int64_t photonsEmitted = 0;  ///< light paths begun
   int64_t photonsStored = 0;
   int64_t gathers = 0;          ///< photon map queries
@@ -31,7 +33,7 @@ struct PassStats {
   int64_t photonMaps = 0;       ///< that were built
   int64_t photonMapBytes = 0;   ///< of the largest of them
 
-  int64_t Rays() const { return cameraRays + shadowRays + photonRays; }
+  int64_t Rays() const { return cameraRays + shadowRays + photonRays + probeRays; }
   PassStats& operator+=(const PassStats& s);
 };
 
@@ -64,7 +66,8 @@ struct IntegratorOptions {
   std::optional<int> photonsPerPass;  ///< light paths a pass
   std::optional<double> radius;       ///< starting radius of density estimates, in scene units
   double radiusScale = 1;             ///< factor on the learned radii (gather_radius.h), where `radius` is absent
-  bool guideEmission = true;          ///< a pilot learns where photons are of use (src/photons/emission_guide.h)
+  KernelShape kernel = KernelShape::Epanechnikov;  ///< of density estimates
+  bool guideEmission = true;  ///< a pilot learns where photons are of use (src/photons/emission_guide.h)
   DirectLighting direct;
 };
 

@@ -11,11 +11,10 @@ void PathIntegrator::Prepare(const Scene& scene, uint64_t seed) {
 }
 
 PassStats PathIntegrator::RenderPass(int pass, Film& film) const {
-  const PassStats stats = ForEachPixel(film, [&](const Vec2i& pixel, PassStats& tileStats) {
-    Sampler sampler = Sampler::ForPixel(seed_, pixel, pass);
-    const PixelSample sample = SamplePixel(*scene_, film, pixel, sampler);
-    film.AddSample(pixel, Radiance(sample.camera.ray, sampler, tileStats) * sample.weight, pass);
-  });
+  const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& stats) {
+    return Radiance(camera.ray, sampler, stats);
+  };
+  const PassStats stats = RenderPixels(*scene_, seed_, pass, 1, radiance, film);
   film.FinishPass(pass);
   return stats;
 }

@@ -1,26 +1,71 @@
 #include "integrators/photon_shooting.h"
 
+#include <bit>
+#include <cmath>
+
 #include "src/photons/emission_pilot.h"
+#include "src/photons/work_pilot.h"
 
 namespace dapple {
 
-int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options) {
+namespace {
+
+int64_t Pixels(const Scene& scene) {
   const Vec2i& resolution = scene.Settings().resolution;
-  return options.photonsPerPass ? *options.photonsPerPass : int64_t{resolution.x} * resolution.y;
+  return int64_t{resolution.x} * resolution.y;
 }
 
-PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, uint64_t seed)
+/// A power of two, so that the light paths of a pass are a net (sampler.h).
+int64_t BalancedLightPaths(const Scene& scene, const PathWork& work) {
+  constexpr double kMost = 1 << 22;  // photons must fit into memory
+  const double ratio = std::clamp(work.camera / work.light, 0.25, 4.0);
+  const double paths = std::clamp(static_cast<double>(Pixels(scene)) * ratio, 1024.0, kMost);
+  return int64_t{1} << std::lround(std::log2(paths));
+}
+
+int BalancedCameraSamples(const Scene& scene, int64_t paths, const PathWork& work) {
+  constexpr double kMost = 16;
+  const double cameraWork = static_cast<double>(Pixels(scene)) * work.camera;
+  return static_cast<int>(std::lround(std::clamp(static_cast<double>(paths) * work.light / cameraWork, 1.0, kMost)));
+}
+
+GatherRadius RadiusOf(const Scene& scene, const EmissionSampler& emission, int64_t paths,
+                      const IntegratorOptions& options, bool causticsOnly, uint64_t seed) {
+  return {scene, emission, paths, {options.maxDepth, options.radiusScale, causticsOnly, options.radius, seed}};
+}
+
+}  // namespace
+
+int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options) {
+  return options.photonsPerPass ? *options.photonsPerPass : Pixels(scene);
+}
+
+PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed)
     // One scattering before the photon lands, one where it is gathered.
     : isNeeded(scene.Facts().CanUsePhotons() && options.maxDepth >= 2),
-      emission(scene,
-               isNeeded && options.guideEmission ? LearnEmissionGuide(scene, options.maxDepth, seed) : EmissionGuide()),
-      paths(LightPathsOfPass(scene, options)),
-      radius(scene, emission, isNeeded ? paths : 0, {options.maxDepth, options.radiusScale, options.radius, seed}) {}
+      emission(scene, isNeeded && options.guideEmission
+                          ? LearnEmissionGuide(scene, options.maxDepth, finalGathers, seed)
+                          : EmissionGuide()) {
+  if (!isNeeded) return;
+  const PathWork work = EstimateWork(scene, emission, options.maxDepth, finalGathers, seed);
+  if (options.photonsPerPass) {
+    paths = *options.photonsPerPass;
+    cameraSamples = BalancedCameraSamples(scene, paths, work);
+  } else {
+    paths = BalancedLightPaths(scene, work);
+  }
+  radius = RadiusOf(scene, emission, paths, options, false, seed);
+  pilotPaths = emission.Guide().PilotPhotons() + work.lightPaths + radius.PilotPaths();
+}
 
 PreparationUse PhotonPlan::Use() const {
   if (!isNeeded) return {};
-  return {TableUse::Of(emission.Guide().MemoryBytes()) + TableUse::Of(radius.MemoryBytes()),
-          emission.Guide().PilotPhotons() + GatherRadius::kPilotPaths};
+  return {TableUse::Of(emission.Guide().MemoryBytes()) + TableUse::Of(radius.MemoryBytes()), pilotPaths};
+}
+
+GatherRadius CausticRadius(const PhotonPlan& plan, const Scene& scene, const IntegratorOptions& options,
+                           uint64_t seed) {
+  return RadiusOf(scene, plan.emission, plan.paths, options, true, seed);
 }
 
 }  // namespace dapple

@@ -12,13 +12,15 @@
 
 namespace dapple {
 
-/// Light paths of a pass: as asked for, else one a pixel of the picture.
+/// Light paths of a pass where nothing is gathered: as asked for, else one a pixel of the picture.
 int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options);
 
-/// How photons are emitted, how many, and within what radius they are gathered.
+/// How photons are emitted, how many, within what radius they are gathered, and by how many camera paths.
 struct PhotonPlan {
-  /// Learned by pilots of fixed length, from scene, options and seed alone.
-  PhotonPlan(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
+  /// Learned by pilots whose length follows, as all else, from the arguments alone. `finalGathers`: diffuse scatterings
+  /// of a camera path before it gathers. Where the options do not say how many light paths a pass has, it spends as
+  /// much on them as on one camera path a pixel; where they do, there are as many camera paths as cost as much.
+  PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
 
   PreparationUse Use() const;
 
@@ -26,9 +28,14 @@ struct PhotonPlan {
   /// are too short. Then there are no pilots, and `ShootPhotons` shoots none.
   bool isNeeded;
   EmissionSampler emission;
-  int64_t paths;
-  GatherRadius radius;
+  int64_t paths = 1;
+  int cameraSamples = 1;   ///< camera paths a pixel and pass
+  GatherRadius radius;     ///< of all photons
+  int64_t pilotPaths = 0;  ///< light paths of all pilots
 };
+
+/// The same for photons that met nothing but specular surfaces.
+GatherRadius CausticRadius(const PhotonPlan& plan, const Scene& scene, const IntegratorOptions& options, uint64_t seed);
 
 /// Photons where they met surfaces: `photons[i]` stands at `positions[i]`.
 template <typename Photon>
@@ -40,6 +47,24 @@ struct ShotPhotons {
   void Store(const Vec3& position, const Photon& photon) {
     positions.push_back(position);
     photons.push_back(photon);
+  }
+
+  /// Moves those photons out for which `isWanted(const Photon&)`; both parts keep their order.
+  template <typename Predicate>
+  ShotPhotons Extract(Predicate&& isWanted) {
+    ShotPhotons wanted;
+    size_t kept = 0;
+    for (size_t i = 0; i < photons.size(); ++i) {
+      if (isWanted(photons[i])) {
+        wanted.Store(positions[i], photons[i]);
+      } else {
+        positions[kept] = positions[i];
+        photons[kept++] = photons[i];
+      }
+    }
+    positions.resize(kept);
+    photons.resize(kept);
+    return wanted;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "integrators/camera_path.h"
 #include "src/base/hilbert_curve.h"
 #include "src/base/parallel.h"
 
@@ -58,6 +59,18 @@ PassStats ForEachPixel(const Film& film, const std::function<void(const Vec2i&, 
   PassStats sum;
   for (const PassStats& stats : tileStats) sum += stats;
   return sum;
+}
+
+PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,
+                       const std::function<Color(const CameraRay&, Sampler&, PassStats&)>& radiance, Film& film) {
+  return ForEachPixel(film, [&](const Vec2i& pixel, PassStats& stats) {
+    for (int i = 0; i < samples; ++i) {
+      Sampler sampler = Sampler::ForPixel(seed, pixel, pass, i, samples);
+      const PixelSample sample = SamplePixel(scene, film, pixel, sampler);
+      const float weight = sample.weight / static_cast<float>(samples);
+      film.AddSample(pixel, radiance(sample.camera, sampler, stats) * weight, pass);
+    }
+  });
 }
 
 }  // namespace dapple

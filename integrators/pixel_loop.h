@@ -5,6 +5,7 @@
 
 #include "integrators/integrator.h"
 #include "src/image/film.h"
+#include "src/sampling/sampler.h"
 
 namespace dapple {
 
@@ -12,5 +13,10 @@ namespace dapple {
 /// and their sum is returned. Tiles, and the pixels of each, follow a Hilbert curve, so that what one pixel looked up
 /// is still in the cache for the next.
 PassStats ForEachPixel(const Film& film, const std::function<void(const Vec2i& pixel, PassStats& stats)>& render);
+
+/// Adds an estimate of each pixel of the film's crop: the mean over `samples` camera paths of
+/// `radiance(camera, sampler, stats)`, where block 0 of the sampler is used up.
+PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,
+                       const std::function<Color(const CameraRay&, Sampler&, PassStats&)>& radiance, Film& film);
 
 }  // namespace dapple

@@ -74,9 +74,9 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
   const auto count = [](int64_t n) { return FormatCount(static_cast<double>(n)); };
   fmt::print("{} in {} (of which preparation {})\n", FormatNumberOf(result.passes, "pass", "passes"),
              FormatDuration(result.seconds), FormatDuration(result.prepareSeconds));
-  fmt::print("rays      {} ({}): {} camera, {} shadow, {} photon\n", count(stats.Rays()),
+  fmt::print("rays      {} ({}): {} camera, {} shadow, {} photon, {} probe\n", count(stats.Rays()),
              Rate(stats.Rays(), result.seconds), count(stats.cameraRays), count(stats.shadowRays),
-             count(stats.photonRays));
+             count(stats.photonRays), count(stats.probeRays));
   if (stats.photonsEmitted > 0) {
     fmt::print("photons   {} emitted ({}), {} stored; {} more in pilots\n", count(stats.photonsEmitted),
                Rate(stats.photonsEmitted, result.seconds), count(stats.photonsStored),

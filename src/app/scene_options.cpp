@@ -80,6 +80,12 @@ DirectTechnique ParseDirect(const std::string& text) {
   throw CLI::ValidationError("--direct", fmt::format("expected mis, light or bsdf, not '{}'", text));
 }
 
+KernelShape ParseKernel(const std::string& text) {
+  if (text == "epanechnikov") return KernelShape::Epanechnikov;
+  if (text == "cone") return KernelShape::Cone;
+  throw CLI::ValidationError("--kernel", fmt::format("expected epanechnikov or cone, not '{}'", text));
+}
+
 constexpr const char* kSceneGroup = "Scene";
 
 void AddSceneGroup(CLI::App* command, SceneOptions* options) {
@@ -131,8 +137,15 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
       ->type_name("R")
       ->group(group);
   command
-      ->add_flag("--no-guide", options->noGuide,
-                 "sppm, hybrid: emit photons as the lights do, without a pilot that learns which of them are of use")
+      ->add_option_function<std::string>(
+          "--kernel", [options](const std::string& text) { options->kernel = ParseKernel(text); },
+          "How photons count by their distance: epanechnikov (the least error) or cone (more weight in the middle)")
+      ->type_name("SHAPE")
+      ->group(group);
+  command
+      ->add_flag(
+          "--no-guide", options->noGuide,
+          "Photon algorithms: emit photons as the lights do, without a pilot that learns which of them are of use")
       ->group(group);
   command
       ->add_option("--light-samples", options->lightSamples,
@@ -223,6 +236,7 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   const bool isTunedByFile = plan.choice.name == "sppm";
   plan.options.photonsPerPass = isTunedByFile ? Either(options.photons, settings.photonsPerIteration) : options.photons;
   plan.options.radius = isTunedByFile ? Either(options.radius, settings.radius) : options.radius;
+  plan.options.kernel = options.kernel;
   plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);

@@ -37,6 +37,7 @@ struct SceneOptions {
   std::optional<int> maxDepth;
   std::optional<int> photons;
   std::optional<double> radius;
+  KernelShape kernel = KernelShape::Epanechnikov;
   bool noGuide = false;
   std::optional<int> lightSamples;
   DirectTechnique direct = DirectTechnique::Mis;

@@ -6,6 +6,7 @@
 
 #include "src/base/hash.h"
 #include "src/base/parallel.h"
+#include "src/photons/camera_pilot.h"
 #include "src/photons/light_path.h"
 #include "src/photons/photon_map.h"
 
@@ -27,53 +28,21 @@ struct VisiblePoints {
   }
 };
 
-void FollowCameraPath(const Scene& scene, const CameraRay& camera, float pixels, Sampler& sampler,
-                      std::vector<Vec3>* points, std::vector<float>* reaches) {
-  constexpr int kMaxBounces = 8;
-  Ray ray = camera.ray;
-  float distance = 0;
-  for (int bounce = 1; bounce <= kMaxBounces; ++bounce) {
-    const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
-    if (!hit) return;
-    distance += hit->t;
-    const Material* material = scene.MaterialAt(*hit);
-    if (!material) {
-      ray = SpawnRay(*hit, ray.d);
-      continue;
-    }
-    const Bsdf bsdf = material->GetBsdf(*hit);
-    if (!bsdf.IsPurelySpecular() && !bsdf.IsBlack()) {
-      points->push_back(hit->p);
-      // What lies between this point and those of the next paths, seen at a slant.
-      constexpr float kMinCosine = 0.2f;
-      const float width = pixels * (camera.footprintAtLens + camera.footprintSpread * distance);
-      reaches->push_back(width / std::max(kMinCosine, AbsDot(hit->ng, hit->wo)));
-    }
-    if (bsdf.Flags().HasDiffuse()) return;
-    sampler.StartBlock(bounce);
-    const double uLobe = sampler.Get1D();
-    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
-    if (!next) return;
-    ray = SpawnRay(*hit, next->wi);
-  }
-}
-
-VisiblePoints FindVisiblePoints(const Scene& scene, uint64_t seed) {
-  constexpr double kPaths = 8192;
-  // Of the whole picture, so that a crop of it is lit by the same photons.
-  const Vec2i& resolution = scene.Settings().resolution;
-  const double step = std::max(1.0, std::sqrt(static_cast<double>(resolution.x) * resolution.y / kPaths));
+VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t seed) {
+  constexpr int kPaths = 8192;
   std::vector<Vec3> points;
   std::vector<float> reaches;
-  int64_t path = 0;
-  for (double y = step / 2; y < resolution.y; y += step)
-    for (double x = step / 2; x < resolution.x; x += step) {
-      Sampler sampler = Sampler::ForLightPath(seed, path++, 0, static_cast<int64_t>(kPaths));
-      const Vec2d uLens = sampler.Get2D();
-      const CameraRay camera =
-          scene.GetCamera().GenerateRay({static_cast<float>(x), static_cast<float>(y)}, uLens, sampler.Get1D());
-      FollowCameraPath(scene, camera, static_cast<float>(step), sampler, &points, &reaches);
-    }
+  const double step = ForEachPilotRay(scene, kPaths, seed, [&](const CameraRay& camera, Sampler& sampler) {
+    FollowCameraPath(scene, camera, finalGathers, sampler,
+                     [&](const SurfaceInteraction& hit, const Bsdf&, float distance) {
+                       points.push_back(hit.p);
+                       // What lies between this point and those of the next paths, seen at a slant; in pixels first.
+                       constexpr float kMinCosine = 0.2f;
+                       const float width = camera.footprintAtLens + camera.footprintSpread * distance;
+                       reaches.push_back(width / std::max(kMinCosine, AbsDot(hit.ng, hit.wo)));
+                     });
+  });
+  for (float& reach : reaches) reach *= static_cast<float>(step);
   if (points.empty()) return {};
   // Far points would reach over all others.
   std::vector<float> sorted = reaches;
@@ -102,20 +71,23 @@ PilotPhoton TracePilotPhoton(const Scene& scene, const EmissionSampler& emission
 
 }  // namespace
 
-EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed) {
+EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed) {
   if (scene.Lights().empty()) return {};
   constexpr uint64_t kPilot = 2;
-  const VisiblePoints visible = FindVisiblePoints(scene, Hash(seed, kPilot));
+  const VisiblePoints visible = FindVisiblePoints(scene, finalGathers, Hash(seed, kPilot));
   if (visible.maxReach == 0) return {};
 
   std::vector<double> power;
   for (const auto& light : scene.Lights()) power.push_back(static_cast<double>(light->Power().MaxComponent()));
   std::vector<PilotPhoton> pilot;
   EmissionGuide guide;
-  constexpr int64_t kRounds[] = {1 << 15, 1 << 15, 1 << 16};
-  for (uint64_t round = 0; round < std::size(kRounds); ++round) {
+  // Of about two photons a pixel: a small picture is not worth a long pilot.
+  const Vec2i& resolution = scene.Settings().resolution;
+  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y, 1 << 13, 1 << 16);
+  const int64_t rounds[] = {most / 2, most / 2, most};
+  for (uint64_t round = 0; round < std::size(rounds); ++round) {
     const EmissionSampler emission(scene, guide);
-    const int64_t photons = kRounds[round];
+    const int64_t photons = rounds[round];
     const size_t first = pilot.size();
     pilot.resize(first + static_cast<size_t>(photons));
     ParallelForChunks(photons, 1024, [&](int64_t begin, int64_t end) {

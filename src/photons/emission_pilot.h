@@ -10,7 +10,8 @@ namespace dapple {
 
 /// Follows a few thousand camera paths to the surfaces that gather photons, then rounds of photons, each round guided
 /// by those before it. A photon is of use where it lands near such a point with at least one scattering event behind
-/// it. The result depends on scene, `maxDepth` and seed alone; it bends nothing where no photon came to anything.
-EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed);
+/// it. `finalGathers`: diffuse scatterings of a camera path before it gathers. The
+/// result depends on the arguments alone; it bends nothing where no photon came to anything.
+EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed);
 
 }  // namespace dapple

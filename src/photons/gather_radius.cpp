@@ -13,72 +13,120 @@ namespace dapple {
 
 namespace {
 
+/// A pilot no longer than a pass, but long enough to say something.
+int64_t PilotPathsFor(int64_t pathsOfPass) { return std::clamp<int64_t>(pathsOfPass, 1 << 13, 1 << 16); }
+
 /// Where the light paths of the pilot leave photons.
-std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed) {
+std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission, int64_t paths, int maxDepth,
+                             bool causticsOnly, uint64_t seed) {
   using Positions = std::vector<Vec3>;
-  const auto chunks =
-      ForEachLightPath<Positions>(emission, seed, 0, GatherRadius::kPilotPaths,
-                                  [&](const EmissionSample& emitted, const Sampler& sampler, Positions& chunk) {
-                                    TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
-                                      if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) chunk.push_back(v.hit.p);
-                                    });
-                                  });
+  const auto chunks = ForEachLightPath<Positions>(
+      emission, seed, 0, paths, [&](const EmissionSample& emitted, const Sampler& sampler, Positions& chunk) {
+        TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
+          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular() && (v.isCaustic || !causticsOnly)) chunk.push_back(v.hit.p);
+        });
+      });
   Positions all;
   for (const Positions& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
   return all;
 }
 
+/// Where a hash table with open addressing, a power of two long and never full, holds `key` or would hold it.
+template <typename Slot>
+Slot& SlotOf(std::span<Slot> table, uint64_t key) {
+  size_t slot = key & (table.size() - 1);
+  while (table[slot].key != 0 && table[slot].key != key) slot = (slot + 1) & (table.size() - 1);
+  return table[slot];
+}
+
 }  // namespace
 
 GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options)
-    : scale_(static_cast<float>(options.scale)), camera_(scene.GetCamera().Position()), unit_(scene.Extent().radius) {
+    : pilotPaths_(PilotPathsFor(paths)),
+      scale_(static_cast<float>(options.scale)),
+      camera_(scene.GetCamera().Position()),
+      unit_(scene.Extent().radius) {
   if (options.fixed) fixed_ = static_cast<float>(*options.fixed);
-  if (paths == 0) return;
   const Vec2i& resolution = scene.Settings().resolution;
   const Vec2 middle(static_cast<float>(resolution.x) / 2, static_cast<float>(resolution.y) / 2);
   const CameraRay camera = scene.GetCamera().GenerateRay(middle, Vec2d(0.5), 0.5);
   widestAtLens_ = camera.footprintAtLens * static_cast<float>(kMaxPixels);
   widestSpread_ = camera.footprintSpread * static_cast<float>(kMaxPixels);
   constexpr uint64_t kPilot = 3;
-  const std::vector<Vec3> positions = ShootPilot(scene, emission, options.maxDepth, Hash(options.seed, kPilot));
-  Fill(positions, DensitiesAt(positions, static_cast<double>(paths)));
+  std::vector<Vec3> positions =
+      ShootPilot(scene, emission, pilotPaths_, options.maxDepth, options.causticsOnly, Hash(options.seed, kPilot));
+  Fill(Learn(std::move(positions), static_cast<double>(paths) / static_cast<double>(pilotPaths_)));
 }
 
-std::vector<float> GatherRadius::DensitiesAt(const std::vector<Vec3>& positions, double pathsOfPass) const {
-  const double toPass = pathsOfPass / kPilotPaths;
-  // So many photons, and the one in the middle, say how dense they are.
-  constexpr size_t kCounted = 16;
-  std::vector<Vec3> points = positions;
-  const PhotonForest forest(std::move(points));
-  std::vector<float> densities(positions.size());
-  ParallelForChunks(static_cast<int64_t>(positions.size()), 1024, [&](int64_t begin, int64_t end) {
+std::vector<GatherRadius::Finding> GatherRadius::Learn(std::vector<Vec3> positions, double toPass) const {
+  const PhotonForest forest(std::move(positions));
+  const auto count = static_cast<int64_t>(forest.Size());
+  constexpr int64_t kChunk = 1024;
+  std::vector<Finding> findings(forest.Size());
+  ParallelForChunks(count, kChunk, [&](int64_t begin, int64_t end) {
     std::vector<float> squared;
-    for (int64_t i = begin; i < end; ++i) {
-      const Vec3& p = positions[static_cast<size_t>(i)];
-      const float widest = Widest(p);
-      forest.FindNearest(p, widest, kCounted + 1, &squared);
-      // The outermost is on the rim, or none is. Many in one place have no end of density.
-      const float radiusSquared = squared.size() > kCounted ? squared.front() : Sqr(widest);
-      const double area = kPiD * static_cast<double>(std::max(radiusSquared, Sqr(widest) * 1e-6f));
-      const double inside = static_cast<double>(std::min(squared.size(), kCounted)) - 1;
-      densities[static_cast<size_t>(i)] = static_cast<float>(std::max(0.0, inside) * toPass / area);
+    for (int64_t i = begin; i < end; ++i)
+      findings[static_cast<size_t>(i)] = FindingAt(forest, forest.Position(static_cast<uint32_t>(i)), toPass, &squared);
+  });
+  // No radius reaches a place of much narrower radius; densities from 16 photons make radii uncertain by an eighth.
+  constexpr float kSameRadius = 1.25f;
+  std::vector<float> shortened(findings.size());
+  ParallelForChunks(count, kChunk, [&](int64_t begin, int64_t end) {
+    for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+      const Finding& here = findings[i];
+      float radius = here.radius;
+      forest.ForEachWithin(here.p, radius, [&](uint32_t j, float distanceSquared) {
+        radius = std::min(radius, std::max(kSameRadius * findings[j].radius, std::sqrt(distanceSquared)));
+      });
+      shortened[i] = radius;
     }
   });
-  return densities;
+  for (size_t i = 0; i < findings.size(); ++i) findings[i].radius = shortened[i];
+  return findings;
 }
 
-void GatherRadius::Fill(const std::vector<Vec3>& positions, const std::vector<float>& densities) {
-  // Two cells a photon at most, in a table that is at least half empty.
-  cells_.assign(std::bit_ceil(4 * positions.size() + 1), {});
-  for (size_t i = 0; i < positions.size(); ++i) {
-    for (const Level level : {Level::Fine, Level::Coarse}) {
-      const uint64_t key = KeyOf(positions[i], level);
-      size_t slot = key & (cells_.size() - 1);
-      while (cells_[slot].key != 0 && cells_[slot].key != key) slot = (slot + 1) & (cells_.size() - 1);
-      cells_[slot].key = key;
-      cells_[slot].sum += static_cast<double>(densities[i]);
-      ++cells_[slot].count;
+GatherRadius::Finding GatherRadius::FindingAt(const PhotonForest& forest, const Vec3& p, double toPass,
+                                              std::vector<float>* squared) const {
+  // So many photons, and the one in the middle, say how dense they are.
+  constexpr size_t kCounted = 16;
+  const float widest = Widest(p);
+  forest.FindNearest(p, widest, kCounted + 1, squared);
+  // The outermost is on the rim, or none is. Many in one place have no end of density.
+  const float radiusSquared = squared->size() > kCounted ? squared->front() : Sqr(widest);
+  const double area = kPiD * static_cast<double>(std::max(radiusSquared, Sqr(widest) * 1e-6f));
+  const double inside = static_cast<double>(std::min(squared->size(), kCounted)) - 1;
+  const auto density = static_cast<float>(std::max(0.0, inside) * toPass / area);
+  const float wanted = density > 0 ? std::sqrt(static_cast<float>(kPhotons) * kInvPi / density) : widest;
+  constexpr auto kNarrowest = static_cast<float>(kMinPixels / kMaxPixels);
+  return {p, density, std::clamp(wanted, kNarrowest * widest, widest)};
+}
+
+void GatherRadius::Fill(std::span<const Finding> findings) {
+  struct Sums {
+    uint64_t key = 0;
+    double density = 0, radius = 0;
+    int64_t count = 0;
+  };
+  // `kLevels` cells a finding at most, in a table that is at least half empty.
+  std::vector<Sums> sums(std::bit_ceil(2 * kLevels * findings.size() + 1));
+  size_t cells = 0;
+  for (const Finding& finding : findings) {
+    for (int level = 0; level < kLevels; ++level) {
+      const uint64_t key = KeyOf(finding.p, level);
+      Sums& cell = SlotOf<Sums>(sums, key);
+      cells += cell.key == 0 ? 1 : 0;
+      cell.key = key;
+      cell.density += static_cast<double>(finding.density);
+      cell.radius += static_cast<double>(finding.radius);
+      ++cell.count;
     }
+  }
+  // Many findings share a cell: a small table stays in the cache.
+  cells_.assign(std::bit_ceil(2 * cells + 1), {});
+  for (const Sums& cell : sums) {
+    if (cell.key == 0) continue;
+    const auto mean = [&](double sum) { return static_cast<float>(sum / static_cast<double>(cell.count)); };
+    SlotOf<Cell>(cells_, cell.key) = {cell.key, mean(cell.density), mean(cell.radius)};
   }
 }
 
@@ -86,37 +134,29 @@ float GatherRadius::Widest(const Vec3& p) const {
   return std::max(widestAtLens_ + widestSpread_ * Distance(p, camera_), unit_ * 1e-9f);
 }
 
-uint64_t GatherRadius::KeyOf(const Vec3& p, Level level) const {
+uint64_t GatherRadius::KeyOf(const Vec3& p, int level) const {
   // A power of two, so that neighbours at nearly the same distance share a grid.
-  const int exponent = std::ilogb(Widest(p) / unit_) + (level == Level::Coarse ? 2 : 0);
+  const int exponent = std::ilogb(Widest(p) / unit_) + 2 * (level - 1);
   const Vec3d fromCamera = (ToDouble(p) - ToDouble(camera_)) / static_cast<double>(unit_);
   const auto coordinate = [&](double x) { return static_cast<int64_t>(std::floor(std::ldexp(x, -exponent))); };
-  const uint64_t key = Hash(static_cast<uint64_t>(exponent), level == Level::Coarse, coordinate(fromCamera.x),
-                            coordinate(fromCamera.y), coordinate(fromCamera.z));
+  const uint64_t key = Hash(static_cast<uint64_t>(exponent), level, coordinate(fromCamera.x), coordinate(fromCamera.y),
+                            coordinate(fromCamera.z));
   return key | 1;
 }
 
-const GatherRadius::Cell* GatherRadius::Find(uint64_t key) const {
-  for (size_t slot = key & (cells_.size() - 1);; slot = (slot + 1) & (cells_.size() - 1)) {
-    if (cells_[slot].key == key) return &cells_[slot];
-    if (cells_[slot].key == 0) return nullptr;
-  }
-}
-
 GatherForecast GatherRadius::At(const Vec3& p) const {
-  const float widest = Widest(p);
-  const Cell* cell = Find(KeyOf(p, Level::Fine));
-  if (!cell) cell = Find(KeyOf(p, Level::Coarse));
-  const float density = cell ? static_cast<float>(cell->sum / static_cast<double>(cell->count)) : 0;
+  const Cell* cell = nullptr;
+  for (int level = 0; level < kLevels && !cell; ++level) {
+    const Cell& slot = SlotOf<const Cell>(cells_, KeyOf(p, level));
+    if (slot.key != 0) cell = &slot;
+  }
   GatherForecast forecast;
   if (fixed_) {
     forecast.radius = *fixed_;
   } else {
-    const float wanted = density > 0 ? std::sqrt(static_cast<float>(kPhotons) * kInvPi / density) : widest;
-    constexpr float kNarrowest = static_cast<float>(kMinPixels / kMaxPixels);
-    forecast.radius = std::clamp(wanted, kNarrowest * widest, widest) * scale_;
+    forecast.radius = (cell ? cell->radius : Widest(p)) * scale_;
   }
-  forecast.photons = density * kPi * Sqr(forecast.radius);
+  if (cell) forecast.photons = cell->density * kPi * Sqr(forecast.radius);
   return forecast;
 }
 

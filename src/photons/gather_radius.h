@@ -2,16 +2,19 @@
 //
 // A pilot of light paths tells how dense photons are. The radius at a place is the one within which a pass is expected
 // to have `kPhotons` of them, between `kMinPixels` and `kMaxPixels` pixels' widths as seen from the camera: so caustics
-// are sharp, dim light is smooth, and no focus is so narrow that a pixel's few camera rays miss it. It is a function of
-// the place alone, learned before the first pass: passes share it, and walks from the camera and from the lights agree
-// on it. The schedule of radius_schedule.h shrinks it with the passes.
+// are sharp, dim light is smooth, and no focus is so narrow that a pixel's few camera rays miss it. Next to places of
+// narrower radius it is so much narrower that it does not reach them: the dark beside a caustic stays dark. It is a
+// function of the place alone, learned before the first pass: passes share it, and walks from the camera and from the
+// lights agree on it. The schedule of radius_schedule.h shrinks it with the passes.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "src/photons/emission_sampler.h"
+#include "src/photons/photon_forest.h"
 
 namespace dapple {
 
@@ -26,39 +29,48 @@ class GatherRadius {
   struct Options {
     int maxDepth = 32;            ///< scattering events on a light path
     double scale = 1;             ///< factor on the radii
+    bool causticsOnly = false;    ///< of the photons that are gathered
     std::optional<double> fixed;  ///< one radius for all places, in scene units
     uint64_t seed = 0;
   };
-  /// Learns for passes of `paths` light paths, by `kPilotPaths` of its own; where there are none it learns nothing.
-  /// Depends on the arguments alone.
+  GatherRadius() = default;
+  /// Learns for passes of `paths` light paths, by a pilot of no more, at least 8,192. Depends on the arguments alone.
   GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options);
 
   GatherForecast At(const Vec3& p) const;
 
   int64_t MemoryBytes() const { return static_cast<int64_t>(cells_.size() * sizeof(Cell)); }
+  /// Light paths of the pilot; 0 where nothing was learned.
+  int64_t PilotPaths() const { return pilotPaths_; }
 
-  static constexpr int64_t kPilotPaths = 1 << 16;
-  static constexpr double kPhotons = 16;
-  static constexpr double kMaxPixels = 2;
+  static constexpr double kPhotons = 24;
+  static constexpr double kMaxPixels = 6;
   static constexpr double kMinPixels = 1;
 
  private:
-  /// A cube of space in which the pilot left photons.
+  /// What the pilot says of a place where it left a photon.
+  struct Finding {
+    Vec3 p;
+    float density;  ///< expected photons of a pass per area
+    float radius;
+  };
+  /// A cube of space in which the pilot left photons: the means of what they say.
   struct Cell {
     uint64_t key = 0;  ///< 0: none
-    double sum = 0;    ///< of the photons' densities: expected photons of a pass per area
-    int64_t count = 0;
+    float density = 0, radius = 0;
   };
-  /// Cells are as wide as the widest radius there (fine), or four times as wide (coarse).
-  enum class Level { Fine, Coarse };
+  /// Cells are about a quarter as wide as the widest radius there; level by level four times as wide.
+  static constexpr int kLevels = 3;
 
   /// `kMaxPixels` times the width of a pixel at the distance of `p` from the camera; positive at the camera too.
   float Widest(const Vec3& p) const;
-  uint64_t KeyOf(const Vec3& p, Level level) const;
-  const Cell* Find(uint64_t key) const;
-  void Fill(const std::vector<Vec3>& positions, const std::vector<float>& densities);
-  std::vector<float> DensitiesAt(const std::vector<Vec3>& positions, double pathsOfPass) const;
+  uint64_t KeyOf(const Vec3& p, int level) const;
+  void Fill(std::span<const Finding> findings);
+  /// `toPass`: photons of a pass for one of the pilot.
+  std::vector<Finding> Learn(std::vector<Vec3> positions, double toPass) const;
+  Finding FindingAt(const PhotonForest& forest, const Vec3& p, double toPass, std::vector<float>* squared) const;
 
+  int64_t pilotPaths_ = 0;
   std::optional<float> fixed_;
   float scale_ = 1;
   Vec3 camera_{0};

@@ -31,6 +31,7 @@ class PhotonForest {
   PhotonForest() = default;
   explicit PhotonForest(std::vector<Vec3> positions, const Follower& follow = {}, const ForestShape& shape = {});
 
+  size_t Size() const { return positions_.size(); }
   const Vec3& Position(uint32_t i) const { return positions_[i]; }
 
   /// Calls `visit(uint32_t i, float distanceSquared)` for each point nearer to `p` than `radius`.

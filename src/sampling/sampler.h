@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 
+#include "src/base/hash.h"
 #include "src/base/vec.h"
 
 namespace dapple {
@@ -29,6 +30,9 @@ class Sampler {
   /// A sampler for number `i` of `count` samples that are taken at the current block, of a sequence that only they use:
   /// the `count` (best a power of two) of one path are stratified against each other, and so are those of all paths.
   Sampler Branch(int i, int count) const;
+
+  /// A seed for random numbers beyond those of the block: of this sample and block alone.
+  uint64_t BlockSeed() const { return Hash(seed_, index_, block_); }
 
   /// The next number of the block, in [0, 1), a multiple of 2^-32. At most eight a block.
   double Get1D() { return points_[static_cast<size_t>(next_++)] * 0x1p-32; }

@@ -31,7 +31,7 @@ constexpr const char* kScene =
 class Emission : public ::testing::TestWithParam<bool> {
  protected:
   Emission() : scene_(testing_support::SceneFromText(kScene)), emission_(*scene_) {
-    if (GetParam()) emission_ = EmissionSampler(*scene_, LearnEmissionGuide(*scene_, 8, 1));
+    if (GetParam()) emission_ = EmissionSampler(*scene_, LearnEmissionGuide(*scene_, 8, 0, 1));
   }
 
   static LeRandom Random(int64_t i, int64_t count) {
@@ -117,7 +117,7 @@ TEST(EmissionGuide, SendsMorePhotonsWhereTheyAreOfUse) {
     return photons;
   };
   const int before = useful(EmissionSampler(*scene));
-  const int after = useful(EmissionSampler(*scene, LearnEmissionGuide(*scene, 8, 1)));
+  const int after = useful(EmissionSampler(*scene, LearnEmissionGuide(*scene, 8, 0, 1)));
   EXPECT_GT(after, 3 * before);
 }
 
@@ -126,7 +126,7 @@ TEST(EmissionGuide, IsAFunctionOfTheSeedWhateverTheThreads) {
   std::vector<Vec3> directions[2];
   for (int threads : {1, 3}) {
     const ThreadLimit limit(threads);
-    const EmissionSampler emission(*scene, LearnEmissionGuide(*scene, 8, 5));
+    const EmissionSampler emission(*scene, LearnEmissionGuide(*scene, 8, 0, 5));
     for (int i = 0; i < 100; ++i) {
       Sampler sampler = Sampler::ForLightPath(1, i, 0, 100);
       directions[threads / 2].push_back(EmitPhoton(emission, sampler)->le.ray.d);
@@ -139,7 +139,7 @@ TEST(EmissionGuide, BendsNothingWhereNoPhotonComesToAnything) {
   const auto scene = testing_support::SceneFromText(
       "LookAt 0 0 5  0 0 0  0 1 0 Camera \"perspective\" Film \"image\" WorldBegin "
       "LightSource \"point\" \"rgb I\" [1 1 1] Material \"matte\" \"rgb Kd\" [0 0 0] Shape \"sphere\" WorldEnd");
-  EXPECT_TRUE(LearnEmissionGuide(*scene, 8, 1).IsEmpty());
+  EXPECT_TRUE(LearnEmissionGuide(*scene, 8, 0, 1).IsEmpty());
 }
 
 }  // namespace

@@ -119,18 +119,41 @@ TEST(PhotonMap, OrderDoesNotDependOnThreads) {
   EXPECT_EQ(order[0], order[1]);
 }
 
-TEST(EpanechnikovKernel, IntegratesToOneOverItsDisk) {
-  constexpr float kRadius = 0.37f;
-  const EpanechnikovKernel kernel(kRadius);
-  double sum = 0;
-  constexpr int kSteps = 100000;
-  for (int i = 0; i < kSteps; ++i) {
-    const double d = kRadius * (i + 0.5) / kSteps;
-    sum += kernel(static_cast<float>(d * d)) * 2 * kPiD * d * kRadius / kSteps;
+class Kernels : public ::testing::TestWithParam<KernelShape> {
+ protected:
+  /// The integral of f(K(d)) over the disk of radius `until`.
+  template <typename F>
+  static double Integrate(const Kernel& kernel, double until, F&& f) {
+    constexpr int kSteps = 100000;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double d = until * (i + 0.5) / kSteps;
+      sum += f(static_cast<double>(kernel(static_cast<float>(d * d)))) * 2 * kPiD * d * until / kSteps;
+    }
+    return sum;
   }
-  EXPECT_NEAR(sum, 1, 1e-5);
+
+  static constexpr float kRadius = 0.37f;
+};
+
+TEST_P(Kernels, IntegrateToOneOverTheirDisk) {
+  const Kernel kernel(GetParam(), kRadius);
+  EXPECT_NEAR(Integrate(kernel, kRadius, [](double k) { return k; }), 1, 1e-5);
   EXPECT_NEAR(kernel(kRadius * kRadius), 0, 1e-5);
+  EXPECT_NEAR(1 / Integrate(kernel, kRadius, [](double k) { return k * k; }),
+              Kernel::EffectiveArea(GetParam(), kRadius), 1e-5);
 }
+
+TEST_P(Kernels, DrawPointsByTheirDensity) {
+  const Kernel kernel(GetParam(), kRadius);
+  for (double u : {0.0, 0.1, 0.3, 0.5, 0.8, 0.99, 1.0}) {
+    // The share u of the kernel lies nearer to the middle than the point drawn with u.
+    const double distance = static_cast<double>(kernel.Sample({u, 0.3}).length());
+    EXPECT_NEAR(Integrate(kernel, distance, [](double k) { return k; }), u, 1e-4);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Kernels, ::testing::Values(KernelShape::Epanechnikov, KernelShape::Cone));
 
 TEST(RadiusSchedule, FollowsTheRecurrenceAndPairsPasses) {
   constexpr double kAlpha = 0.7;

@@ -1,0 +1,149 @@
+#include "integrators/photon_gatherer.h"
+
+#include "integrators/pixel_loop.h"
+#include "src/photons/coverage.h"
+#include "src/photons/radius_schedule.h"
+#include "src/photons/same_surface.h"
+
+namespace dapple {
+
+namespace {
+
+// Surfaces that look in few enough directions for the camera path to go on through them.
+bool IsGlossy(const Bsdf& bsdf) {
+  constexpr float kMaxRoughness = 0.25f;
+  return !bsdf.Flags().HasDiffuse() && bsdf.MinRoughness() < kMaxRoughness;
+}
+
+}  // namespace
+
+void PhotonGatherer::Prepare(const Scene& scene, uint64_t seed) {
+  scene_ = &scene;
+  seed_ = seed;
+  plan_.emplace(scene, options_, rules_.finalGathers, seed);
+  if (rules_.hasCausticMap && plan_->isNeeded && scene.Facts().MayHaveCaustics())
+    causticRadius_ = CausticRadius(*plan_, scene, options_, seed);
+}
+
+PreparationUse PhotonGatherer::Preparation() const {
+  PreparationUse use = plan_->Use();
+  if (causticRadius_) {
+    use.tables += TableUse::Of(causticRadius_->MemoryBytes());
+    use.pilotPaths += causticRadius_->PilotPaths();
+  }
+  return use;
+}
+
+PassStats PhotonGatherer::RenderPass(int pass, Film& film) const {
+  PassStats stats;
+  const PhotonPass photons = TracePhotons(pass, &stats);
+  const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
+    return Radiance(camera, photons, sampler, tileStats);
+  };
+  stats += RenderPixels(*scene_, seed_, pass, plan_->cameraSamples, radiance, film);
+  film.FinishPass(pass);
+  return stats;
+}
+
+PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, PassStats* stats) const {
+  const auto trace = [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
+    const auto store = [&](const LightVertex& v) {
+      // Light straight from its source is sampled where it is needed.
+      if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
+      chunk.Store(v.hit.p, {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
+    };
+    chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store);
+  };
+  ShotPhotons<Photon> shot = ShootPhotons<Photon>(*plan_, seed_, pass, trace);
+  PhotonPass photons{{}, {}, 1 / static_cast<float>(plan_->paths), RadiusFactor(pass)};
+  if (causticRadius_)
+    photons.caustics = BuildPhotonMap(shot.Extract([](const Photon& photon) { return photon.isCaustic; }), stats);
+  photons.all = BuildPhotonMap(std::move(shot), stats);
+  return photons;
+}
+
+Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,
+                               PassStats& stats) const {
+  Ray ray = camera.ray;
+  Color radiance, throughput(1);
+  LastScattering last;
+  float etaScale = 1;
+  bool hasGathered = false, isDone = false;
+  int gathersLeft = rules_.finalGathers;
+  for (int scattered = 0;;) {
+    ++stats.cameraRays;
+    const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
+    // Sources that a gathering surface sees by specular ones reach it as caustic photons.
+    if (!hasGathered || !last.isSpecular)
+      radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, options_.direct);
+    if (!hit) return radiance;
+    const Material* material = scene_->MaterialAt(*hit);
+    if (!material) {
+      ray = SpawnRay(*hit, ray.d);
+      continue;
+    }
+    if (scattered >= options_.maxDepth || isDone) return radiance;
+    const Bsdf bsdf = material->GetBsdf(*hit);
+    if (bsdf.IsBlack()) return radiance;
+
+    ++scattered;
+    sampler.StartBlock(scattered);
+    const Vec2d uDirection = sampler.Get2D();
+    const double uLobe = sampler.Get1D();
+    const double uRoulette = sampler.Get1D();
+    const bool isGlossy = IsGlossy(bsdf), goesOn = isGlossy || gathersLeft > 0;
+    const LightContext at = ContextOf(*scene_, *hit, bsdf, options_.direct);
+    if (!bsdf.IsPurelySpecular()) {
+      radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
+      const GatherPoint point{*hit, bsdf, options_.maxDepth - scattered, goesOn, sampler.BlockSeed()};
+      radiance += throughput * Gather(photons, point, stats);
+    }
+
+    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
+    if (!next) return radiance;
+    throughput *= next->weight;
+    etaScale *= next->eta * next->eta;
+    last = {next->IsSpecular(), at, next->pdf};
+    if (!last.isSpecular) {
+      hasGathered |= goesOn;
+      // Where all photons were gathered, only light straight from its source is left to find.
+      isDone = !goesOn;
+      if (!isGlossy) --gathersLeft;
+    }
+    ray = SpawnRay(*hit, next->wi);
+    if (!SurvivesRoulette(scattered, uRoulette, etaScale, &throughput)) return radiance;
+  }
+}
+
+Color PhotonGatherer::Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const {
+  const auto radiusOf = [&](const GatherRadius& radius) {
+    return radius.At(point.hit.p).radius * photons.radiusFactor;
+  };
+  Color sum;
+  if (causticRadius_) sum += Gather(photons.caustics, radiusOf(*causticRadius_), point, stats);
+  if (!point.causticsOnly || (!causticRadius_ && scene_->Facts().MayHaveCaustics()))
+    sum += Gather(photons.all, radiusOf(plan_->radius), point, stats);
+  return sum * photons.weight;
+}
+
+Color PhotonGatherer::Gather(const Map& map, float radius, const GatherPoint& point, PassStats& stats) const {
+  ++stats.gathers;
+  const SurfaceInteraction& hit = point.hit;
+  const Kernel kernel(options_.kernel, radius);
+  const GatherSite site(hit.p, hit.ng, hit.wo, radius, point.bsdf.Flags().HasTransmission());
+  Color sum;
+  map.ForEachWithin(hit.p, radius, [&](const Vec3& position, const Photon& photon, float distanceSquared) {
+    ++stats.photonsGathered;
+    if (photon.scattered > point.maxScattered || (point.causticsOnly && !photon.isCaustic)) return;
+    const Vec3 wi = photon.wi.Decode();
+    if (!IsOnSameSurface(site, position, distanceSquared, photon.normal.Decode(), wi)) return;
+    // Photons are dense by |ng.wi|, and Eval has the shading normal's cosine.
+    const float cosine = AbsDot(hit.ng, wi);
+    if (cosine > 0)
+      sum += point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux * (kernel(distanceSquared) / cosine);
+  });
+  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, site, options_.kernel, point.seed, &stats.probeRays);
+  return sum;
+}
+
+}  // namespace dapple

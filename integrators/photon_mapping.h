@@ -1,0 +1,19 @@
+// Photon mapping with two maps (Jensen 1996, "Global illumination using photon maps"; Jensen 2001, chapter 9): a
+// caustic map that is seen directly, and a map of all other photons behind a final gather, so that what is seen of them
+// is not their noise but their mean over all directions. A camera path goes on from the first surface that is not
+// specular, by the BSDF's density, to the next, which gathers both maps.
+#pragma once
+
+#include "integrators/photon_gatherer.h"
+
+namespace dapple {
+
+class PhotonMappingIntegrator final : public PhotonGatherer {
+ public:
+  explicit PhotonMappingIntegrator(const IntegratorOptions& options)
+      : PhotonGatherer(options, {.finalGathers = 1, .hasCausticMap = true}) {}
+
+  std::string_view Name() const override { return "photon_mapping"; }
+};
+
+}  // namespace dapple

@@ -1,0 +1,61 @@
+// Camera paths of a pilot: from the lens to the surfaces that gather photons.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/sampling/sampler.h"
+#include "src/scene/scene.h"
+
+namespace dapple {
+
+/// Walks a camera path through surfaces that scatter into few directions and through `finalGathers` diffuse ones, and
+/// calls `visit(const SurfaceInteraction&, const Bsdf&, float distance)`, with the length of the path so far, at each
+/// that is neither black nor purely specular. Returns the number of segments traced. Uses block n of the sampler at its
+/// n-th surface.
+template <typename Visitor>
+int FollowCameraPath(const Scene& scene, const CameraRay& camera, int finalGathers, Sampler& sampler, Visitor&& visit) {
+  constexpr int kMaxBounces = 8;
+  Ray ray = camera.ray;
+  float distance = 0;
+  int segments = 0;
+  for (int bounce = 1; bounce <= kMaxBounces; ++bounce) {
+    ++segments;
+    const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
+    if (!hit) break;
+    distance += hit->t;
+    const Material* material = scene.MaterialAt(*hit);
+    if (!material) {
+      ray = SpawnRay(*hit, ray.d);
+      continue;
+    }
+    const Bsdf bsdf = material->GetBsdf(*hit);
+    if (!bsdf.IsPurelySpecular() && !bsdf.IsBlack()) visit(*hit, bsdf, distance);
+    if (bsdf.Flags().HasDiffuse() && finalGathers-- == 0) break;
+    sampler.StartBlock(bounce);
+    const double uLobe = sampler.Get1D();
+    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
+    if (!next) break;
+    ray = SpawnRay(*hit, next->wi);
+  }
+  return segments;
+}
+
+/// Calls `follow(const CameraRay&, Sampler&)` for about `paths` rays spread over the whole picture, so that a crop of
+/// it is lit by the same photons. Returns the distance between them, in pixels (>= 1).
+template <typename Follow>
+double ForEachPilotRay(const Scene& scene, int paths, uint64_t seed, Follow&& follow) {
+  const Vec2i& resolution = scene.Settings().resolution;
+  const double step = std::max(1.0, std::sqrt(static_cast<double>(resolution.x) * resolution.y / paths));
+  int64_t path = 0;
+  for (double y = step / 2; y < resolution.y; y += step)
+    for (double x = step / 2; x < resolution.x; x += step) {
+      Sampler sampler = Sampler::ForLightPath(seed, path++, 0, paths);
+      const Vec2d uLens = sampler.Get2D();
+      const Vec2 position(static_cast<float>(x), static_cast<float>(y));
+      follow(scene.GetCamera().GenerateRay(position, uLens, sampler.Get1D()), sampler);
+    }
+  return step;
+}
+
+}  // namespace dapple
