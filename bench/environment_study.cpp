@@ -29,20 +29,15 @@ const std::string kStrategies[] = {"uniform", "cosine", "importance", "compensat
 std::unique_ptr<Scene> SceneWith(const std::string& file, const std::string& sampling, int samples) {
   Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   SceneDescription description = ParsePbrtFile(file, {}, diagnostics);
-  for (LightDescription& light : description.lights) {
-    if (light.type != "infinite") continue;
-    Parameter strategy, count;
-    strategy.type = ParameterType::String;
-    strategy.name = "sampling";
-    strategy.strings = {sampling};
-    count.type = ParameterType::Integer;
-    count.name = "samples";
-    count.integers = {samples};
-    for (Parameter* parameter : {&strategy, &count}) {
-      parameter->location = light.location;
-      light.params.Add(*parameter);
-    }
-  }
+  Parameter strategy, count;
+  strategy.type = ParameterType::String;
+  strategy.name = "sampling";
+  strategy.strings = {sampling};
+  count.type = ParameterType::Integer;
+  count.name = "samples";
+  count.integers = {samples};
+  SetOnInfiniteLights(&description, strategy);
+  SetOnInfiniteLights(&description, count);
   return BuildScene(description, {}, diagnostics);
 }
 

@@ -1,11 +1,12 @@
 #!/bin/sh
-# Installs the Debian packages that packages.txt names and this machine lacks, with apt-get: as root, or through sudo.
-# Where all are there it does nothing and needs no rights.
+# Installs the Debian packages that its arguments name, or without any packages.txt, and this machine lacks, with apt-get:
+# as root, or through sudo. Where all are there it does nothing and needs no rights.
 set -eu
 
 list=$(dirname "$0")/../packages.txt
+[ $# -gt 0 ] || set -- $(sed 's/#.*//' "$list")
 missing=
-for package in $(sed 's/#.*//' "$list"); do
+for package in "$@"; do
   status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null) || status=
   [ "$status" = installed ] || missing="$missing $package"
 done

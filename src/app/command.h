@@ -22,5 +22,6 @@ void AddEmitCommand(CLI::App& program, Action* action);
 void AddEnvmapCommand(CLI::App& program, Action* action);
 void AddCompareCommand(CLI::App& program, Action* action);
 void AddMergeCommand(CLI::App& program, Action* action);
+void AddConvergeCommand(CLI::App& program, Action* action);
 
 }  // namespace dapple

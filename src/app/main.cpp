@@ -58,6 +58,7 @@ int Run(int argc, char** argv) {
   AddEmitCommand(program, &action);
   AddEnvmapCommand(program, &action);
   AddCompareCommand(program, &action);
+  AddConvergeCommand(program, &action);
   if (const int code = Parse(program, Arguments(program, argc, argv)); code >= 0) return code;
   return action();
 }

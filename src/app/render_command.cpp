@@ -32,13 +32,6 @@ struct RenderOptions : SceneOptions {
   bool recordsSeconds = false;
 };
 
-/// "ring.pbrt" and "ring.pbrt.gz" are both "ring".
-std::string SceneName(const std::string& path) {
-  std::filesystem::path name = std::filesystem::path(path).filename();
-  if (name.extension() == ".gz") name = name.stem();
-  return name.stem().string();
-}
-
 /// In the current folder: the name that the scene's film gives, or the scene's own, as an EXR file; for a range of
 /// passes with the range, as the exact sums.
 std::string DefaultOutput(const RenderOptions& options, const RenderSettings& settings) {

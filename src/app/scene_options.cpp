@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -33,13 +34,6 @@ std::optional<std::vector<T>> SplitNumbers(const std::string& text, char separat
     if (stream.get() != separator) return std::nullopt;
   }
   return std::nullopt;
-}
-
-/// What is wrong with `text` as a number above 0; empty where nothing is. CLI11's own check lets NaN pass.
-std::string CheckPositive(const std::string& text) {
-  const auto number = SplitNumbers<double>(text, ',');
-  const bool isPositive = number && number->size() == 1 && number->front() > 0 && std::isfinite(number->front());
-  return isPositive ? "" : fmt::format("expected a number above 0, not '{}'", text);
 }
 
 /// Pictures that could not be written are refused before they are rendered.
@@ -88,8 +82,16 @@ KernelShape ParseKernel(const std::string& text) {
 
 constexpr const char* kSceneGroup = "Scene";
 
-void AddSceneGroup(CLI::App* command, SceneOptions* options) {
-  options->AddFileTo(command);
+void AddVersion(CLI::App* command, SceneOptions* options) {
+  command
+      ->add_option("--pbrt-version", options->pbrtVersion,
+                   "Read the file as of this version of pbrt; found from the text otherwise")
+      ->check(CLI::IsMember({3, 4}).description(""))
+      ->type_name("3|4")
+      ->group(kSceneGroup);
+}
+
+void AddPictureGroup(CLI::App* command, SceneOptions* options) {
   command
       ->add_option_function<std::string>(
           "--resolution", [options](const std::string& text) { options->resolution = ParseResolution(text); },
@@ -104,8 +106,10 @@ void AddSceneGroup(CLI::App* command, SceneOptions* options) {
       ->group(kSceneGroup);
 }
 
-void AddRenderGroup(CLI::App* command, SceneOptions* options) {
-  const std::string group = "Rendering (what is not given is the scene's)";
+const char* const kRenderGroup = "Rendering (what is not given is the scene's)";
+
+void AddBudgetGroup(CLI::App* command, SceneOptions* options) {
+  const std::string group = kRenderGroup;
   std::vector<std::string> names{"auto"};
   for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
   command->add_option("--integrator", options->integrator, fmt::format("{}", fmt::join(names, ", ")))
@@ -123,6 +127,10 @@ void AddRenderGroup(CLI::App* command, SceneOptions* options) {
       ->excludes(passes)
       ->type_name("SECONDS")
       ->group(group);
+}
+
+void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
+  const std::string group = kRenderGroup;
   command->add_option("--seed", options->seed, "Seed of all random numbers")->type_name("N")->group(group);
   command->add_option("--max-depth", options->maxDepth, "Scattering events on a path")
       ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
@@ -192,6 +200,27 @@ void SetBudget(const RenderSettings& settings, const SceneOptions& options, Rend
   }
 }
 
+void SetStrategy(const SceneOptions& options, SceneDescription* description) {
+  const auto set = [&](const char* name, const std::string& value) {
+    Parameter parameter;
+    parameter.type = ParameterType::String;
+    parameter.name = name;
+    parameter.strings = {value};
+    if (SetOnInfiniteLights(description, parameter) == 0)
+      throw Error(
+          FileLocation(options.scene),
+          fmt::format("strategy {}: the scene has no infinite light whose directions it could draw", options.strategy));
+  };
+  const size_t slash = options.strategy.find('/');
+  const std::string sampling = options.strategy.substr(0, slash);
+  set("sampling", sampling);
+  if (slash != std::string::npos) {
+    set("emission", options.strategy.substr(slash + 1));
+  } else if (sampling == "uniform" || sampling == "importance") {
+    set("emission", sampling);
+  }
+}
+
 void WarnOfLackingIntegrator(const RenderSettings& settings, const IntegratorChoice& choice, Diagnostics& diagnostics) {
   const std::vector<std::string_view> known = IntegratorNames();
   if (settings.integrator.empty() || std::find(known.begin(), known.end(), settings.integrator) != known.end()) return;
@@ -202,23 +231,40 @@ void WarnOfLackingIntegrator(const RenderSettings& settings, const IntegratorCho
 
 }  // namespace
 
+std::string CheckPositive(const std::string& text) {
+  // CLI11's own check lets NaN pass.
+  const auto number = SplitNumbers<double>(text, ',');
+  const bool isPositive = number && number->size() == 1 && number->front() > 0 && std::isfinite(number->front());
+  return isPositive ? "" : fmt::format("expected a number above 0, not '{}'", text);
+}
+
+std::string SceneName(const std::string& path) {
+  std::filesystem::path name = std::filesystem::path(path).filename();
+  if (name.extension() == ".gz") name = name.stem();
+  return name.stem().string();
+}
+
 void SceneOptions::AddFileTo(CLI::App* command) {
   command->add_option("scene", scene, "The scene: a .pbrt or .pbrt.gz file")->required()->type_name("FILE");
-  command
-      ->add_option("--pbrt-version", pbrtVersion,
-                   "Read the file as of this version of pbrt; found from the text otherwise")
-      ->check(CLI::IsMember({3, 4}).description(""))
-      ->type_name("3|4")
-      ->group(kSceneGroup);
+  AddVersion(command, this);
 }
 
 void SceneOptions::AddTo(CLI::App* command) {
-  AddSceneGroup(command, this);
-  AddRenderGroup(command, this);
+  AddFileTo(command);
+  AddPictureGroup(command, this);
+  AddBudgetGroup(command, this);
+  AddAlgorithmGroup(command, this);
+}
+
+void SceneOptions::AddFixedTo(CLI::App* command) {
+  AddVersion(command, this);
+  AddPictureGroup(command, this);
+  AddAlgorithmGroup(command, this);
 }
 
 LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
-  const SceneDescription description = ParsePbrtFile(options.scene, {.pbrtVersion = options.pbrtVersion}, diagnostics);
+  SceneDescription description = ParsePbrtFile(options.scene, {.pbrtVersion = options.pbrtVersion}, diagnostics);
+  if (!options.strategy.empty()) SetStrategy(options, &description);
   BuildOptions build;
   build.resolution = options.resolution;
   build.cropWindow = options.crop;

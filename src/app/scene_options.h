@@ -23,6 +23,12 @@ namespace dapple {
 /// More threads than any machine has processors would only take memory.
 inline constexpr int kMaxThreads = 1024;
 
+/// What is wrong with an option's `text` as a finite number above 0; empty where nothing is.
+std::string CheckPositive(const std::string& text);
+
+/// "ring.pbrt" and "ring.pbrt.gz" are both "ring".
+std::string SceneName(const std::string& path);
+
 /// As the command line gives them; what is absent is the scene's.
 struct SceneOptions {
   std::string scene;
@@ -42,8 +48,13 @@ struct SceneOptions {
   std::optional<int> lightSamples;
   DirectTechnique direct = DirectTechnique::Mis;
   int threads = 0;  ///< 0: one a processor
+  /// How infinite lights are sampled, in place of what the file says: SAMPLING/EMISSION, or one name for both sides
+  /// where emission knows it too and for next-event estimation where not. Empty: the file's own.
+  std::string strategy;
 
   void AddTo(CLI::App* command);
+  /// All but the scene, the integrator and the budget: what a comparison of integrators holds fixed.
+  void AddFixedTo(CLI::App* command);
   /// Only the scene and the version of its format.
   void AddFileTo(CLI::App* command);
 };

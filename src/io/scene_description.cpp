@@ -26,4 +26,16 @@ std::filesystem::path SceneDescription::ResolvePath(const std::string& name, con
   return Exists(besideFile) ? besideFile : besideScene;
 }
 
+int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter) {
+  int count = 0;
+  for (LightDescription& light : description->lights) {
+    if (light.type != "infinite") continue;
+    Parameter own = parameter;
+    own.location = light.location;
+    light.params.Add(std::move(own));
+    ++count;
+  }
+  return count;
+}
+
 }  // namespace dapple

@@ -90,4 +90,7 @@ struct SceneDescription {
   std::filesystem::path ResolvePath(const std::string& name, const FileLocation& namedAt) const;
 };
 
+/// Sets a parameter of every infinite light, at the light's place; returns how many there are.
+int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter);
+
 }  // namespace dapple

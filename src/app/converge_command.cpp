@@ -1,0 +1,197 @@
+// `dapple converge`: algorithms compared by error against time, as a page to look at and as data.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <fmt/chrono.h>
+#include <nlohmann/json.hpp>
+
+#include "src/app/command.h"
+#include "src/app/command_line.h"
+#include "src/app/convergence_study.h"
+#include "src/app/format.h"
+#include "src/app/report_page.h"
+#include "src/app/signals.h"
+#include "src/base/parallel.h"
+#include "src/image/atomic_file.h"
+#include "src/image/false_color.h"
+#include "src/image/image_io.h"
+#include "src/render/version.h"
+
+namespace dapple {
+
+namespace {
+
+struct ConvergeOptions : StudyOptions {
+  std::vector<std::string> scenes;
+  std::string folder;
+  bool isQuiet = false;
+};
+
+using Json = nlohmann::ordered_json;
+
+/// A folder that is there in the end and can be written to.
+void MakeFolder(const std::string& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure || !std::filesystem::is_directory(folder))
+    throw Error(FileLocation(folder), fmt::format("cannot make the folder: {}", failure.message()));
+}
+
+Json About() {
+  return {{"version", Version()},
+          {"instructionSet", InstructionSet()},
+          {"processor", ProcessorName()},
+          {"processors", std::thread::hardware_concurrency()},
+          {"threads", ThreadCount()},
+          {"date", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"commandLine", CommandLine()}};
+}
+
+Json ToJson(const StudyPictures& pictures) {
+  Json json = {{"reference", PngUrl(EncodePng(pictures.reference))}, {"contenders", Json::array()}};
+  for (const std::vector<StudyPicture>& ofContender : pictures.contenders) {
+    Json list = Json::array();
+    for (const StudyPicture& picture : ofContender)
+      list.push_back({{"timeIndex", picture.timeIndex},
+                      {"seconds", picture.seconds},
+                      {"passes", picture.passes},
+                      {"picture", PngUrl(picture.picture)},
+                      {"difference", PngUrl(picture.difference)}});
+    json["contenders"].push_back(list);
+  }
+  return json;
+}
+
+/// The colours of differences, evenly along their scale, as CSS writes them.
+Json RampForPage() {
+  constexpr int kSteps = 20;
+  Json colors = Json::array();
+  for (int i = 0; i <= kSteps; ++i) {
+    const Color c = Map(RampColor(static_cast<double>(i) / kSteps), EncodeSRgb);
+    colors.push_back(fmt::format("rgb({:.0f} {:.0f} {:.0f})", 255 * c.r, 255 * c.g, 255 * c.b));
+  }
+  return colors;
+}
+
+void WriteReport(const ConvergeOptions& options, const std::vector<Study>& studies) {
+  std::vector<SceneConvergence> scenes;
+  for (const Study& study : studies) scenes.push_back(study.convergence);
+  Json data = ConvergenceToJson(scenes, About());
+  const auto path = [&](const std::string& name) { return (std::filesystem::path(options.folder) / name).string(); };
+  WriteFileAtomically(path("data.csv"), ConvergenceToCsv(scenes));
+  WriteFileAtomically(path("data.json"), data.dump(1) + "\n");
+  for (size_t i = 0; i < studies.size(); ++i) data["scenes"][i]["pictures"] = ToJson(studies[i].pictures);
+  data["ramp"] = RampForPage();
+  WriteFileAtomically(path("index.html"), ReportPage(data));
+  fmt::print("{}\n", path("index.html"));
+}
+
+void TellDuration(const ConvergeOptions& options) {
+  const double runs = static_cast<double>(options.integrators.size()) *
+                      static_cast<double>(std::max<size_t>(1, options.strategies.size())) * options.seeds;
+  const double ofReference = options.referenceFile.empty() ? options.referenceSeconds : 0;
+  fmt::print(
+      stderr, "about {} of rendering\n",
+      FormatDuration(static_cast<double>(options.scenes.size()) * (runs * *options.scene.seconds + ofReference)));
+}
+
+int RunConverge(ConvergeOptions options) {
+  if (!options.referenceFile.empty() && options.scenes.size() > 1)
+    throw Error("--reference is of one scene, and several were given");
+  MakeFolder(options.folder);
+  const ThreadLimit threads(options.scene.threads);
+  if (options.referenceSeconds == 0) options.referenceSeconds = 10 * *options.scene.seconds;
+  if (!options.isQuiet) TellDuration(options);
+  const StopSignals signals;
+  std::vector<Study> studies;
+  for (const std::string& scene : options.scenes) {
+    if (signals.Flag()) break;
+    options.scene.scene = scene;
+    Study study = RunStudy(options, options.isQuiet, signals.Flag());
+    const std::string name = fmt::format("reference-{}.exr", study.convergence.name);
+    if (options.referenceFile.empty())
+      WriteExr((std::filesystem::path(options.folder) / name).string(), study.pictures.reference);
+    studies.push_back(std::move(study));
+  }
+  WriteReport(options, studies);
+  return signals.Flag() ? 128 + signals.Signal() : kExitSuccess;
+}
+
+void AddReferenceGroup(CLI::App* command, ConvergeOptions* options) {
+  const std::string group = "Reference";
+  CLI::Option* const file =
+      command->add_option("--reference", options->referenceFile, "The image that counts as true; else one is rendered")
+          ->type_name("FILE")
+          ->group(group);
+  command
+      ->add_option("--reference-error", options->referenceError,
+                   "The relative MSE that the file itself has, shown as a band")
+      ->check(CheckPositive)
+      ->needs(file)
+      ->type_name("E")
+      ->group(group);
+  std::vector<std::string> names{"auto"};
+  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
+  command->add_option("--reference-integrator", options->referenceIntegrator, "What renders it; by default auto")
+      ->check(CLI::IsMember(names).description(""))
+      ->excludes(file)
+      ->type_name("NAME")
+      ->group(group);
+  command->add_option("--reference-time", options->referenceSeconds, "How long; by default ten times --time")
+      ->check(CheckPositive)
+      ->excludes(file)
+      ->type_name("SECONDS")
+      ->group(group);
+}
+
+}  // namespace
+
+void AddConvergeCommand(CLI::App& program, Action* action) {
+  CLI::App* const command = program.add_subcommand("converge", "Compare algorithms: error against time, as a page");
+  const auto options = std::make_shared<ConvergeOptions>();
+  command->add_option("scenes", options->scenes, "Scenes: .pbrt or .pbrt.gz files")->required()->type_name("FILE");
+  std::vector<std::string> names{"auto"};
+  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
+  command->add_option("--integrators", options->integrators, "Which to compare, as in path,sppm")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name("A,B,...");
+  command->add_option("--time", options->scene.seconds, "How long each renders, with each seed")
+      ->required()
+      ->check(CheckPositive)
+      ->type_name("SECONDS");
+  command
+      ->add_option("--seeds", options->seeds,
+                   "Runs of each with seeds of their own: their spread gives the slopes' intervals; 3 by default")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
+  command
+      ->add_option("--strategies", options->strategies,
+                   "Each algorithm with each of these for infinite lights: uniform, cosine, importance, compensated, "
+                   "structured or product, for emission too where it knows the name; SAMPLING/EMISSION sets both")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("A,B,...");
+  command->add_option("-o,--output", options->folder, "Folder for index.html, data.csv and data.json; made if missing")
+      ->required()
+      ->type_name("FOLDER");
+  command->add_option("--images", options->imageTimes, "Pictures at N times in the page, each four times the last; 5")
+      ->check(CLI::Range(1, 5).description(""))
+      ->type_name("N");
+  command->add_flag("--quiet", options->isQuiet, "No progress; warnings and errors only");
+  AddReferenceGroup(command, options.get());
+  options->scene.AddFixedTo(command);
+  command->callback([options, action] { *action = [options] { return RunConverge(*options); }; });
+}
+
+}  // namespace dapple

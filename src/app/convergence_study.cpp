@@ -1,0 +1,190 @@
+#include "src/app/convergence_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "src/app/format.h"
+#include "src/image/false_color.h"
+#include "src/image/metrics.h"
+#include "src/render/convergence_run.h"
+#include "src/render/output.h"
+
+namespace dapple {
+
+namespace {
+
+/// Far from the seeds that people choose.
+constexpr int kReferenceSeed = 0x5eedf00d;
+
+Film FilmOf(const Scene& scene) {
+  return Film(scene.Settings().resolution, scene.Settings().crop, scene.Settings().filter);
+}
+
+Image Exposed(Image picture, const Scene& scene) {
+  for (float& value : picture.Values()) value *= scene.Settings().exposure;
+  return picture;
+}
+
+class StudyRunner {
+ public:
+  StudyRunner(const StudyOptions& options, bool isQuiet, const std::atomic<bool>& stop)
+      : options_(options),
+        isQuiet_(isQuiet),
+        stop_(stop),
+        times_(SnapshotTimes(*options.scene.seconds)),
+        name_(SceneName(options.scene.scene)),
+        diagnostics_([](const std::string& line) { fmt::print(stderr, "{}\n", line); }) {}
+
+  Study Run() {
+    const Scene& scene = SceneOf("");
+    SceneConvergence& convergence = study_.convergence;
+    convergence.name = name_;
+    convergence.file = options_.scene.scene;
+    convergence.seconds = *options_.scene.seconds;
+    AddContenders();
+    ErrorMeter meter(MakeReference(scene));
+    convergence.width = meter.Reference().Width();
+    convergence.height = meter.Reference().Height();
+    study_.pictures.reference = meter.Reference();
+    study_.pictures.contenders.resize(convergence.contenders.size());
+    const int firstSeed = options_.scene.seed.value_or(scene.Settings().seed.value_or(0));
+    for (int seed = firstSeed; seed < firstSeed + options_.seeds; ++seed) {
+      for (size_t i = 0; i < convergence.contenders.size() && !stop_; ++i)
+        RunContender(i, seed, seed == firstSeed, meter);
+    }
+    return std::move(study_);
+  }
+
+ private:
+  template <typename... Args>
+  void Tell(fmt::format_string<Args...> format, Args&&... args) const {
+    if (!isQuiet_) fmt::print(stderr, "{}: {}\n", name_, fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  const Scene& SceneOf(const std::string& strategy) {
+    std::unique_ptr<Scene>& scene = scenes_[strategy];
+    if (!scene) {
+      SceneOptions options = options_.scene;
+      options.strategy = strategy;
+      scene = Load(options, diagnostics_).scene;
+    }
+    return *scene;
+  }
+
+  RenderPlan PlanOf(const std::string& integrator, const Scene& scene) {
+    SceneOptions options = options_.scene;
+    options.integrator = integrator;
+    return MakePlan(scene, options, diagnostics_);
+  }
+
+  void AddContenders() {
+    const std::vector<std::string> own{""};
+    for (const std::string& integrator : options_.integrators) {
+      for (const std::string& strategy : options_.strategies.empty() ? own : options_.strategies) {
+        Contender contender;
+        contender.integrator = PlanOf(integrator, SceneOf(strategy)).choice.name;
+        contender.strategy = strategy;
+        contender.name = integrator == "auto" ? fmt::format("auto ({})", contender.integrator) : integrator;
+        if (!strategy.empty()) contender.name += " " + strategy;
+        study_.convergence.contenders.push_back(contender);
+      }
+    }
+  }
+
+  Image MakeReference(const Scene& scene) {
+    return options_.referenceFile.empty() ? RenderReference(scene) : ReadReference(scene);
+  }
+
+  Image ReadReference(const Scene& scene) {
+    ReferenceInfo& info = study_.convergence.reference;
+    info.source = std::filesystem::path(options_.referenceFile).filename().string();
+    if (options_.referenceError) {
+      info.errors.emplace();
+      info.errors->fill(std::numeric_limits<double>::quiet_NaN());
+      (*info.errors)[0] = *options_.referenceError;
+      info.errorSource = "relative MSE as told by --reference-error";
+    } else {
+      info.errorSource = "not known: it comes from a file, and no --reference-error was given";
+    }
+    Image reference = ReadImage(options_.referenceFile);
+    // What is rendered must be comparable with it; told now, before hours of work.
+    const ComparablePair pair = MakeComparable(ToPicture(FilmOf(scene), scene.Settings().exposure), reference);
+    if (pair.test.Width() != scene.Settings().crop.Width() || pair.test.Height() != scene.Settings().crop.Height())
+      throw Error(FileLocation(options_.referenceFile), "the reference does not cover what is rendered");
+    return pair.reference;
+  }
+
+  Image RenderReference(const Scene& scene) {
+    const RenderPlan plan = PlanOf(options_.referenceIntegrator, scene);
+    Tell("reference, {}, {}", plan.choice.name, FormatDuration(options_.referenceSeconds));
+    Film film = FilmOf(scene);
+    RenderBudget budget;
+    budget.seconds = options_.referenceSeconds;
+    RenderHooks hooks;
+    hooks.stop = &stop_;
+    const RenderResult result = Render(scene, kReferenceSeed, *plan.integrator, film, budget, hooks);
+    if (film.PassCount() == 0) throw Error("stopped before the reference had a pass; no report is written");
+    ReferenceInfo& info = study_.convergence.reference;
+    info.source = fmt::format("{}, {} in {}", plan.choice.name, FormatNumberOf(film.PassCount(), "pass", "passes"),
+                              FormatDuration(result.seconds));
+    info.errors = ErrorsOfNoise(film, scene.Settings().exposure);
+    info.errorSource = info.errors ? "noise, estimated from its half-images; bias is not seen"
+                                   : "not known: it has one pass only, and so no half-images";
+    return ToPicture(film, scene.Settings().exposure);
+  }
+
+  void RunContender(size_t index, int seed, bool keepsPictures, const ErrorMeter& meter) {
+    Contender& contender = study_.convergence.contenders[index];
+    const Scene& scene = SceneOf(contender.strategy);
+    const RenderPlan plan = PlanOf(contender.integrator, scene);
+    Film film = FilmOf(scene);
+    const ConvergenceRun run =
+        RunWithSnapshots(scene, static_cast<uint64_t>(int64_t{seed}), *plan.integrator, times_, film, {}, &stop_);
+    if (run.stopped) return;
+    SeedRun result{seed, run.prepareSeconds, run.seconds, run.snapshotSeconds, run.passes, {}};
+    for (const Snapshot& snapshot : run.snapshots) {
+      const Image picture = Exposed(snapshot.picture, scene);
+      result.snapshots.push_back({snapshot.timeIndex, snapshot.seconds, snapshot.passes, meter.Measure(picture)});
+      if (keepsPictures && IsPictured(snapshot.timeIndex)) Keep(index, snapshot, picture, meter.Reference());
+    }
+    Tell("{}, seed {}: {} in {}, relative MSE {:.3g}", contender.name, seed,
+         FormatNumberOf(run.passes, "pass", "passes"), FormatDuration(run.seconds), result.snapshots.back().errors[0]);
+    contender.seeds.push_back(std::move(result));
+  }
+
+  /// Every fourth time, each four times the one before, counted from the last.
+  bool IsPictured(int timeIndex) const {
+    const int fromLast = static_cast<int>(times_.size()) - 1 - timeIndex;
+    return fromLast % 4 == 0 && fromLast / 4 < options_.imageTimes;
+  }
+
+  void Keep(size_t index, const Snapshot& snapshot, const Image& picture, const Image& reference) {
+    const Image difference = FalseColorLogarithmic(RelativeErrors(picture, reference), 1e-3, 1);
+    study_.pictures.contenders[index].push_back(
+        {snapshot.timeIndex, snapshot.seconds, snapshot.passes, EncodePng(picture), EncodePng(difference)});
+  }
+
+  const StudyOptions& options_;
+  bool isQuiet_;
+  const std::atomic<bool>& stop_;
+  std::vector<double> times_;
+  std::string name_;
+  Diagnostics diagnostics_;
+  std::map<std::string, std::unique_ptr<Scene>> scenes_;  ///< by strategy
+  Study study_;
+};
+
+}  // namespace
+
+Study RunStudy(const StudyOptions& options, bool isQuiet, const std::atomic<bool>& stop) {
+  return StudyRunner(options, isQuiet, stop).Run();
+}
+
+}  // namespace dapple

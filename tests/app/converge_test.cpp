@@ -1,0 +1,106 @@
+// `dapple converge` from end to end, but for what a browser makes of the page.
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "src/image/image_io.h"
+#include "src/image/metrics.h"
+#include "src/render/version.h"
+#include "tests/app/program.h"
+
+namespace dapple {
+namespace {
+
+using Converge = ProgramTest;
+
+TEST_F(Converge, WritesDataAndAPageThatNeedsNothingElse) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = Run(
+      "converge tiny.pbrt --integrators path,sppm --time 0.1 --seeds 2 --reference-time 0.2 --photons 500 --no-guide "
+      "-o out/report");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(result.out, "out/report/index.html\n");
+  const auto json = nlohmann::json::parse(Read("out/report/data.json"));
+  EXPECT_EQ(json["about"]["version"], Version());
+  EXPECT_TRUE(BeginsWith(json["about"]["commandLine"], "dapple converge tiny.pbrt --integrators path,sppm"));
+  const auto& scene = json["scenes"][0];
+  EXPECT_EQ(scene["name"], "tiny");
+  EXPECT_EQ(scene["width"], 24);
+  EXPECT_GT(scene["reference"]["errors"]["relativeMse"], 0);
+  ASSERT_EQ(scene["contenders"].size(), 2u);
+  int snapshots = 0;
+  for (const auto& contender : scene["contenders"]) {
+    ASSERT_EQ(contender["seeds"].size(), 2u);
+    for (const auto& run : contender["seeds"]) {
+      ASSERT_GE(run["snapshots"].size(), 1u);
+      EXPECT_EQ(run["snapshots"].back()["passes"], run["passes"]);
+      EXPECT_EQ(run["snapshots"].back()["timeIndex"], 16);
+      snapshots += static_cast<int>(run["snapshots"].size());
+    }
+  }
+  std::istringstream csv(Read("out/report/data.csv"));
+  int lines = 0;
+  for (std::string line; std::getline(csv, line);) ++lines;
+  EXPECT_EQ(lines, snapshots + 1);
+  const std::string page = Read("out/report/index.html");
+  EXPECT_FALSE(std::regex_search(
+      page, std::regex("(src|href)\\s*=|@import|url\\(|fetch\\(|@STYLE@|@DATA@|@SCRIPT@", std::regex::optimize)));
+  EXPECT_TRUE(Contains(page, "data:image/png;base64,iVBORw0KGgo"));
+}
+
+// What is measured is what `compare` measures, of a render of as many passes.
+TEST_F(Converge, ErrorsAreThoseOfTheRender) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(Run("tiny.pbrt --integrator path --passes 256 --seed 99 -o ref.exr --quiet").exitCode, 0);
+  ASSERT_EQ(Run("converge tiny.pbrt --integrators path --time 0.05 --seeds 1 --seed 5 --reference ref.exr "
+                "--reference-error 1e-4 -o out --quiet")
+                .exitCode,
+            0);
+  const auto scene = nlohmann::json::parse(Read("out/data.json"))["scenes"][0];
+  EXPECT_EQ(scene["reference"]["errors"]["relativeMse"], 1e-4);
+  EXPECT_TRUE(scene["reference"]["errors"]["flip"].is_null());
+  const auto& last = scene["contenders"][0]["seeds"][0]["snapshots"].back();
+  ASSERT_EQ(Run("tiny.pbrt --integrator path --seed 5 -o a.exr --quiet --passes " + last["passes"].dump()).exitCode, 0);
+  const ImageDifference difference = CompareImages(ReadImage(Path("a.exr")), ReadImage(Path("ref.exr")));
+  EXPECT_DOUBLE_EQ(last["errors"]["relativeMse"], difference.relativeMse);
+  EXPECT_DOUBLE_EQ(last["errors"]["mape"], difference.mape);
+}
+
+TEST_F(Converge, StrategiesOfInfiniteLights) {
+  WriteScene("tiny.pbrt");
+  Write("sky.pbrt", Read("tiny.pbrt") + "LightSource \"infinite\" \"rgb L\" [1 1 2]\n");
+  const std::string rest = " --integrators path --time 0.02 --seeds 1 --reference-time 0.05 -o out --quiet";
+  ASSERT_EQ(Run("converge sky.pbrt --strategies uniform,product/importance" + rest).exitCode, 0);
+  const auto contenders = nlohmann::json::parse(Read("out/data.json"))["scenes"][0]["contenders"];
+  ASSERT_EQ(contenders.size(), 2u);
+  EXPECT_EQ(contenders[0]["name"], "path uniform");
+  EXPECT_EQ(contenders[1]["strategy"], "product/importance");
+  const ProgramResult unknown = Run("converge sky.pbrt --strategies best" + rest);
+  EXPECT_EQ(unknown.exitCode, 1);
+  EXPECT_TRUE(Contains(unknown.err, "unknown sampling \"best\""));
+  const ProgramResult lightless = Run("converge tiny.pbrt --strategies uniform" + rest);
+  EXPECT_EQ(lightless.exitCode, 1);
+  EXPECT_TRUE(BeginsWith(lightless.err, "tiny.pbrt: error: strategy uniform: the scene has no infinite light"));
+}
+
+TEST_F(Converge, AReferenceThatDoesNotFitIsTold) {
+  WriteScene("tiny.pbrt");
+  WriteExr(Path("wide.exr"), Image::Rgb(25, 16));
+  Image part = Image::Rgb(12, 16);
+  part.fullSize = {24, 16};
+  WriteExr(Path("part.exr"), part);
+  const std::string rest = " --integrators path --time 0.02 --seeds 1 -o out --quiet";
+  const ProgramResult wide = Run("converge tiny.pbrt --reference wide.exr" + rest);
+  EXPECT_EQ(wide.exitCode, 1);
+  EXPECT_TRUE(Contains(wide.err, "cannot compare pictures of 24 x 16 and 25 x 16 pixels"));
+  const ProgramResult half = Run("converge tiny.pbrt --reference part.exr" + rest);
+  EXPECT_EQ(half.exitCode, 1);
+  EXPECT_TRUE(BeginsWith(half.err, "part.exr: error: the reference does not cover what is rendered"));
+  EXPECT_EQ(Run("converge missing.pbrt" + rest).exitCode, 1);
+}
+
+}  // namespace
+}  // namespace dapple
