@@ -53,10 +53,12 @@ void RenderPasses(benchmark::State& state, const std::string& sceneName, const s
 
 DAPPLE_RENDER_BENCHMARK(box, path);
 DAPPLE_RENDER_BENCHMARK(box, light_tracing);
+DAPPLE_RENDER_BENCHMARK(box, photon_mapping);
 DAPPLE_RENDER_BENCHMARK(box, sppm);
 DAPPLE_RENDER_BENCHMARK(box, hybrid);
 DAPPLE_RENDER_BENCHMARK(ring, path);
 DAPPLE_RENDER_BENCHMARK(ring, light_tracing);
+DAPPLE_RENDER_BENCHMARK(ring, photon_mapping);
 DAPPLE_RENDER_BENCHMARK(ring, sppm);
 DAPPLE_RENDER_BENCHMARK(ring, hybrid);
 

@@ -61,14 +61,14 @@ TEST_F(Skip, ADiffuseSceneTracesNoPhotonInAuto) {
 
 TEST_F(Skip, NoPhotonIsTracedWhereNoneCouldBeGathered) {
   const std::string mirrors = kPoint + kMirror + kFloor + kBall, dark = kMatte + kFloor + kBall;
-  for (const std::string integrator : {"sppm", "hybrid"}) {
+  for (const std::string integrator : {"photon_mapping", "sppm", "hybrid"}) {
     const std::string option = "--integrator " + integrator;
     ExpectNoPhotons(Stats(mirrors, option));
     ExpectNoPhotons(Stats("Material \"glass\" " + mirrors, option));
     ExpectNoPhotons(Stats("LightSource \"point\" \"rgb I\" [0 0 0] " + dark, option));
     ExpectNoPhotons(Stats(kPoint + dark, option + " --max-depth 1"));
     // One surface that catches light is enough.
-    EXPECT_EQ(Stats(kPoint + kMirror + kBall + kMatte + kFloor, option + " --photons 1000")["photonMaps"]["built"], 1);
+    EXPECT_GE(Stats(kPoint + kMirror + kBall + kMatte + kFloor, option + " --photons 1000")["photonMaps"]["built"], 1);
   }
 }
 

@@ -47,7 +47,7 @@ TEST(PhotonGather, NothingLeaksThroughWallsATenthOfTheRadiusThick) {
   constexpr double kThickness = 0.01;
   const std::string outer = Box(1 + kThickness);
   // What lets light through is asked too: behind the white wall there is none, but photons of its other face are near.
-  for (const std::string integrator : {"sppm", "hybrid"}) {
+  for (const std::string integrator : {"photon_mapping", "sppm", "hybrid"}) {
     const double lit = SeenOfRoom(integrator, "", "0 -0.9 0  0 1 0");
     EXPECT_GT(lit, 0.1);
     for (const std::string& outside :
@@ -81,7 +81,7 @@ Image CausticAt(const std::string& integrator, double scale, double offset) {
 // The same random numbers make the same paths, but for the few that rounding turns another way.
 TEST(PhotonGather, ScenesFarAwayTinyAndHugeGiveTheSamePicture) {
   const struct { double scale, offset; } kCases[] = {{1, 1e7}, {1e-6, 0}, {1e6, 0}, {1e6, 1e7}};
-  for (const std::string integrator : {"sppm", "hybrid"}) {
+  for (const std::string integrator : {"photon_mapping", "sppm", "hybrid"}) {
     const Image expected = CausticAt(integrator, 1, 0);
     for (const auto& c : kCases) {
       SCOPED_TRACE(fmt::format("{}, scale {}, offset {}", integrator, c.scale, c.offset));
