@@ -10,13 +10,14 @@ JOBS ?= $(shell memory=$$(awk '/MemAvailable/ { print int($$2 / 1500000) }' /pro
                 [ -n "$$memory" ] && [ "$$memory" -lt "$$processors" ] && processors=$$memory; \
                 [ "$$processors" -ge 1 ] && echo $$processors || echo 1)
 
-.PHONY: help packages build demo test bench format clean
+.PHONY: help packages build demo test bench gallery format clean
 
 help:
 	@echo 'make demo    install what is missing, build, render a caustic to build/demo.png'
 	@echo 'make test    install what is missing, build, run all tests'
 	@echo 'make build   install what is missing, build; the program is build/release/dapple'
 	@echo 'make bench   build, run the benchmarks'
+	@echo 'make gallery build, compare all algorithms on all scenes: build/gallery/index.html'
 	@echo 'make format  clang-format all sources'
 	@echo 'make clean   remove build/'
 	@echo 'Variables: PRESET=release|portable|debug|asan|tsan, JOBS=N'
@@ -40,6 +41,9 @@ test: build
 
 bench: build
 	@for program in $(BUILD)/bench/*_bench; do echo "== $$program"; $$program || exit 1; done
+
+gallery: build
+	@bench/gallery
 
 format:
 	@git ls-files --cached --others --exclude-standard '*.h' '*.cpp' | xargs clang-format -i

@@ -91,6 +91,7 @@ void WriteReport(const ConvergeOptions& options, const std::vector<Study>& studi
   for (size_t i = 0; i < studies.size(); ++i) data["scenes"][i]["pictures"] = ToJson(studies[i].pictures);
   data["ramp"] = RampForPage();
   WriteFileAtomically(path("index.html"), ReportPage(data));
+  if (!options.isQuiet) fmt::print("{}", ConvergenceToMarkdown(scenes, 0));
   fmt::print("{}\n", path("index.html"));
 }
 

@@ -188,6 +188,36 @@ std::string ConvergenceToCsv(const std::vector<SceneConvergence>& scenes) {
   return csv;
 }
 
+std::string ConvergenceToMarkdown(const std::vector<SceneConvergence>& scenes, size_t measure) {
+  std::vector<std::string> names;
+  for (const SceneConvergence& scene : scenes) {
+    for (const Contender& contender : scene.contenders)
+      if (std::ranges::find(names, contender.name) == names.end()) names.push_back(contender.name);
+  }
+  std::string table = fmt::format("| {} |", kErrorMeasures[measure].name), rule = "|---|";
+  for (const std::string& name : names) {
+    table += fmt::format(" `{}` |", name);
+    rule += "---|";
+  }
+  table += "\n" + rule + "\n";
+  for (const SceneConvergence& scene : scenes) {
+    const double best = BestFinalError(scene.contenders, measure);
+    table += fmt::format("| `{}` |", scene.name);
+    for (const std::string& name : names) {
+      const auto contender = std::ranges::find(scene.contenders, name, &Contender::name);
+      const auto curve = contender == scene.contenders.end() ? std::vector<CurvePoint>() : MeanCurve(contender->seeds);
+      if (curve.empty()) {
+        table += " - |";
+        continue;
+      }
+      const double error = curve.back().mean[measure];
+      table += error == best ? fmt::format(" **{:.2g}** |", error) : fmt::format(" {:.2g} |", error);
+    }
+    table += '\n';
+  }
+  return table;
+}
+
 Json ConvergenceToJson(const std::vector<SceneConvergence>& scenes, const Json& about) {
   Json json = {{"about", about}, {"measures", Json::array()}, {"scenes", Json::array()}};
   for (const ErrorMeasure& measure : kErrorMeasures)

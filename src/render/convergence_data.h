@@ -75,6 +75,9 @@ double BestFinalError(const std::vector<Contender>& contenders, size_t measure);
 /// A line for each snapshot, with a heading.
 std::string ConvergenceToCsv(const std::vector<SceneConvergence>& scenes);
 
+/// A table of final errors, a line a scene and a column a contender, as Markdown: means over the seeds, the best bold.
+std::string ConvergenceToMarkdown(const std::vector<SceneConvergence>& scenes, size_t measure);
+
 /// Everything: snapshots, curves, slopes, the times to reach the best one's error; `about` is what the caller tells of
 /// program and machine.
 nlohmann::ordered_json ConvergenceToJson(const std::vector<SceneConvergence>& scenes,

@@ -227,6 +227,15 @@ TEST(ConvergenceData, PointsNearTheReferencesErrorAreNotFitted) {
   EXPECT_GT(FitSlopes(seeds, 0, own).overTime->slope, -0.95);
 }
 
+TEST(ConvergenceData, TheScoreboardHasTheBestInBold) {
+  SceneConvergence other = TwoContenders();
+  other.name = "other";
+  other.contenders.erase(other.contenders.begin());
+  EXPECT_EQ(ConvergenceToMarkdown({TwoContenders(), other}, 0),
+            "| relative MSE | `fast` | `slow` |\n|---|---|---|\n"
+            "| `made, \"up\"` | **0.25** | 1 |\n| `other` | - | **1** |\n");
+}
+
 TEST(ConvergenceData, ALineOfTheTableForEachSnapshot) {
   std::istringstream csv(ConvergenceToCsv({TwoContenders()}));
   std::string line;

@@ -81,7 +81,8 @@ function key(name) {
 
 // --- Plots
 
-const margin = {left: 58, right: 104, top: 14, bottom: 42}, plotHeight = 400;
+const margin = {left: 58, top: 14, bottom: 42}, plotHeight = 400;
+margin.right = Math.min(190, 20 + 7.9 * Math.max(...names.map((name) => name.length)));  // the names stand there
 
 function logScale(low, high, from, to) {
   const a = Math.log(low), b = Math.log(high);
@@ -165,8 +166,17 @@ function drawGuide(picture, box, range, series, x, y, axis) {
   const start = Math.max(x0, last[axis] * (range.y[1] / last.mean[state.measure]) ** (1 / exponent));
   const end = Math.min(x1, last[axis] * (range.y[0] / last.mean[state.measure]) ** (1 / exponent));
   const label = (isSquare ? '∝ 1/' : '∝ 1/√') + (axis === 'seconds' ? 't' : 'n');
-  picture.append(svg('path', {d: `M${x(start)} ${y(at(start))}L${x(end)} ${y(at(end))}`, class: 'guide'}),
-                 text(Math.max(x(start) + 8, box.left + 8), y(at(start)) + 16, label, 'start'));
+  const line = (share) => start * (end / start) ** share;
+  picture.append(svg('path', {d: `M${x(start)} ${y(at(start))}L${x(end)} ${y(at(end))}`, class: 'guide'}));
+  // Written above the line at its left end or below it at its right one, where there is more room.
+  const places = [
+    {x: x(line(0.08)) + 4, y: Math.max(y(at(line(0.08))) - 6, box.top + 12), anchor: 'start'},
+    {x: x(line(0.92)) - 4, y: Math.min(y(at(line(0.92))) + 15, box.bottom - 4), anchor: 'end'},
+  ];
+  const points = series.flatMap((c) => c.curve.map((p) => [x(p[axis]), y(p.mean[state.measure])]));
+  const room = (place) => Math.min(...points.map(([px, py]) => Math.hypot(px - place.x, py - place.y)));
+  const best = room(places[0]) > room(places[1]) ? places[0] : places[1];
+  picture.append(text(best.x, best.y, label, best.anchor));
 }
 function drawSeries(picture, contender, x, y, axis) {
   const {color, dash, shape} = style(contender.name);
@@ -334,6 +344,7 @@ function pane(...images) {
   return element('figure', {className: 'pane'}, caption, view);
 }
 function drawImages() {
+  byId('hint').textContent = `${state.layout === 'pair' ? 'Move over the image to divide it; drag' : 'Drag'} to move, turn the wheel to zoom, double-click to fit${state.layout === 'pair' ? '.' : ': all images move together.'}`;
   const stage = byId('stage'), isPair = state.layout === 'pair', list = moments();
   byId('images').hidden = !list.length;
   if (!list.length) return;
@@ -351,7 +362,9 @@ function drawImages() {
     figure.querySelector('.view').append(element('div', {className: 'rule'}));
     stage.replaceChildren(figure);
   } else {
-    stage.replaceChildren(...['reference', ...shown().map((c) => c.name)].map((name) => pane(imageOf(name))));
+    const panes = ['reference', ...shown().map((c) => c.name)].map((name) => pane(imageOf(name)));
+    stage.style.setProperty('--columns', panes.length < 5 ? panes.length : panes.length === 5 || panes.length === 6 ? 3 : 4);
+    stage.replaceChildren(...panes);
   }
   moveImages();
   moveDivider();
@@ -392,8 +405,12 @@ function addMoves(view) {
   }, {passive: false});
   view.addEventListener('pointerdown', (event) => view.setPointerCapture(event.pointerId));
   view.addEventListener('pointermove', (event) => {
-    if (!view.hasPointerCapture(event.pointerId)) return;
     const place = view.getBoundingClientRect(), {zoom, x, y} = state.view;
+    if (!view.hasPointerCapture(event.pointerId)) {
+      if (state.layout !== 'pair') return;
+      byId('divider').value = 100 * (event.clientX - place.left) / place.width;
+      return moveDivider();
+    }
     setView(zoom, x - event.movementX / place.width / zoom, y - event.movementY / place.height / zoom);
   });
   view.addEventListener('dblclick', () => setView(1, 0.5, 0.5));
