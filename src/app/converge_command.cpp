@@ -122,6 +122,7 @@ int RunConverge(ConvergeOptions options) {
       WriteExr((std::filesystem::path(options.folder) / name).string(), study.pictures.reference);
     studies.push_back(std::move(study));
   }
+  if (studies.empty()) throw Error("stopped before the first scene; no report is written");
   WriteReport(options, studies);
   return signals.Flag() ? 128 + signals.Signal() : kExitSuccess;
 }

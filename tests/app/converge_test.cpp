@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <signal.h>
 
 #include "src/image/image_io.h"
 #include "src/image/metrics.h"
@@ -85,6 +86,17 @@ TEST_F(Converge, StrategiesOfInfiniteLights) {
   const ProgramResult lightless = Run("converge tiny.pbrt --strategies uniform" + rest);
   EXPECT_EQ(lightless.exitCode, 1);
   EXPECT_TRUE(BeginsWith(lightless.err, "tiny.pbrt: error: strategy uniform: the scene has no infinite light"));
+}
+
+TEST_F(Converge, ASignalEndsItWithTheRunsThatAreComplete) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = RunAndSignal(
+      "converge tiny.pbrt --integrators path --time 0.2 --seeds 1000 --reference-time 0.1 -o out", SIGINT, "seed 1:");
+  EXPECT_EQ(result.exitCode, 128 + SIGINT) << result.err;
+  const auto seeds = nlohmann::json::parse(Read("out/data.json"))["scenes"][0]["contenders"][0]["seeds"];
+  ASSERT_GE(seeds.size(), 2u);
+  for (const auto& run : seeds) EXPECT_EQ(run["snapshots"].back()["timeIndex"], 16);
+  EXPECT_TRUE(Exists("out/index.html"));
 }
 
 TEST_F(Converge, AReferenceThatDoesNotFitIsTold) {
