@@ -81,33 +81,5 @@ TEST_F(GatherRadii, AreWidestWhereNoPhotonEverLands) {
   EXPECT_GT(outside.radius, 1);
 }
 
-// The caustic of a mirror ring on a floor: bright inside of its edge, nearly dark outside.
-TEST(GatherRadius, DoesNotReachFromTheDarkIntoACaustic) {
-  const auto scene = testing_support::SceneFromText(
-      "LookAt 0 0 8  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" [30] "
-      "Film \"image\" \"integer xresolution\" [128] \"integer yresolution\" [128] WorldBegin "
-      "AttributeBegin LightSource \"point\" \"point from\" [4 0 2] AttributeEnd Material \"matte\" "
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-3 -3 0 3 -3 0 3 3 0 -3 3 0] "
-      "Material \"mirror\" Shape \"cylinder\" \"float radius\" [1] \"float zmin\" [0] \"float zmax\" [0.5] WorldEnd");
-  const EmissionSampler emission(*scene);
-  const GatherRadius radius(*scene, emission, 1 << 18, {});
-  const Transform toRender = scene->RenderToWorld().Inverse();
-  const auto radiusAt = [&](double x, double y) { return radius.At(ToFloat(toRender.Point({x, y, 0}))).radius; };
-  constexpr int kSide = 64;
-  int reaching = 0;
-  float narrowest = kInfinity, widest = 0;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const double x = (i % kSide + 0.5) / kSide * 1.8 - 0.9, y = (i / kSide + 0.5) / kSide * 1.8 - 0.9;
-    const float here = radiusAt(x, y);
-    narrowest = std::min(narrowest, here);
-    widest = std::max(widest, here);
-    // At the rim of what is gathered, radii are not much narrower.
-    const double angle = 2.4 * i, reach = 0.9 * static_cast<double>(here);
-    reaching += radiusAt(x + reach * std::cos(angle), y + reach * std::sin(angle)) < 0.5f * here;
-  }
-  EXPECT_GT(widest, 2 * narrowest);
-  EXPECT_LT(reaching, 0.02 * kSide * kSide);
-}
-
 }  // namespace
 }  // namespace dapple
