@@ -83,7 +83,7 @@ EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGath
   EmissionGuide guide;
   // Of about two photons a pixel: a small picture is not worth a long pilot.
   const Vec2i& resolution = scene.Settings().resolution;
-  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y, 1 << 13, 1 << 16);
+  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, 1 << 15);
   const int64_t rounds[] = {most / 2, most / 2, most};
   for (uint64_t round = 0; round < std::size(rounds); ++round) {
     const EmissionSampler emission(scene, guide);

@@ -14,7 +14,7 @@ namespace dapple {
 namespace {
 
 /// A pilot no longer than a pass, but long enough to say something.
-int64_t PilotPathsFor(int64_t pathsOfPass) { return std::clamp<int64_t>(pathsOfPass, 1 << 13, 1 << 16); }
+int64_t PilotPathsFor(int64_t pathsOfPass) { return std::clamp<int64_t>(pathsOfPass, 1 << 13, 1 << 15); }
 
 /// Where the light paths of the pilot leave photons.
 std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission, int64_t paths, int maxDepth,
