@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "src/base/error.h"
+#include "src/base/vec.h"
 #include "tests/image/test_images.h"
 
 namespace dapple {
@@ -150,6 +152,105 @@ TEST(Flip, BadPixelsAreLeftOutOfTheMeanAndShownInTheMap) {
   EXPECT_EQ(result.map.At(3, 3, 0), 0.f);
   EXPECT_THROW(FlipReference(Constant(2, 2, Color(1)), FlipRange::Low).Compare(Constant(2, 2, Color(NAN))), Error);
   EXPECT_THROW(FlipReference(Constant(2, 2, Color(1)), FlipRange::Low).Compare(Constant(2, 3, Color(1))), Error);
+}
+
+/// LDR-FLIP of one pixel by the papers' formulas as they stand: kernels in two dimensions, sums over all their pixels.
+class DirectFlip {
+ public:
+  explicit DirectFlip(double pixelsPerDegree) : ppd_(pixelsPerDegree) {}
+
+  double At(const Image& reference, const Image& test, int x, int y) const {
+    const Vec3d r = Seen(reference, x, y), t = Seen(test, x, y);
+    const double power = std::pow(std::abs(r.x - t.x) + std::hypot(r.y - t.y, r.z - t.z), 0.7);
+    const Vec3d green = Lab({0, 1, 0}), blue = Lab({0, 0, 1});
+    const double most = std::pow(std::abs(green.x - blue.x) + std::hypot(green.y - blue.y, green.z - blue.z), 0.7);
+    const double color =
+        power < 0.4 * most ? 0.95 * power / (0.4 * most) : 0.95 + 0.05 * (power - 0.4 * most) / (0.6 * most);
+    const double edges = std::abs(Feature(reference, x, y, true) - Feature(test, x, y, true));
+    const double points = std::abs(Feature(reference, x, y, false) - Feature(test, x, y, false));
+    return std::pow(color, 1 - std::sqrt(std::max(edges, points) / std::sqrt(2.)));
+  }
+
+ private:
+  static Vec3d Xyz(const Vec3d& c) {
+    return {(0.4124564 * c.x + 0.3575761 * c.y + 0.1804375 * c.z) / 0.95047,
+            0.2126729 * c.x + 0.7151522 * c.y + 0.0721750 * c.z,
+            (0.0193339 * c.x + 0.1191920 * c.y + 0.9503041 * c.z) / 1.08883};
+  }
+  static Vec3d Lab(const Vec3d& c) {
+    const auto f = [](double v) { return v > 216. / 24389 ? std::cbrt(v) : (24389. / 27 * v + 16) / 116; };
+    const Vec3d xyz = Xyz(c);
+    const double lightness = 116 * f(xyz.y) - 16;
+    return {lightness, lightness / 100 * 500 * (f(xyz.x) - f(xyz.y)), lightness / 100 * 200 * (f(xyz.y) - f(xyz.z))};
+  }
+  /// Luminance, X less Y and Y less Z: YCxCz but for factors and an offset, which a normalised blur leaves alone.
+  static Vec3d Opponent(const Image& image, int x, int y) {
+    const Color c = image.ColorAt(std::clamp(x, 0, image.Width() - 1), std::clamp(y, 0, image.Height() - 1));
+    const Vec3d xyz = Xyz({double{c.r}, double{c.g}, double{c.b}});
+    return {xyz.y, xyz.x - xyz.y, xyz.y - xyz.z};
+  }
+  Vec3d Seen(const Image& image, int x, int y) const {
+    constexpr double kTerms[3][4] = {{1, 0.0047, 0, 1}, {1, 0.0053, 0, 1}, {34.1, 0.04, 13.5, 0.025}};
+    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / 2) / M_PI * ppd_));
+    Vec3d sum(0), weights(0);
+    for (int v = -radius; v <= radius; ++v) {
+      for (int u = -radius; u <= radius; ++u) {
+        const double squared = (u * u + v * v) / (ppd_ * ppd_);
+        const Vec3d value = Opponent(image, x + u, y + v);
+        for (int c = 0; c < 3; ++c) {
+          double weight = 0;
+          for (const int i : {0, 2})
+            weight +=
+                kTerms[c][i] * std::sqrt(M_PI / kTerms[c][i + 1]) * std::exp(-M_PI * M_PI * squared / kTerms[c][i + 1]);
+          sum[c] += weight * value[c];
+          weights[c] += weight;
+        }
+      }
+    }
+    const Vec3d blurred = sum / weights, xyz(blurred.x + blurred.y, blurred.x, blurred.x - blurred.z);
+    // Linear Rec. 709 of XYZ, the usual inverse matrix.
+    const double X = xyz.x * 0.95047, Y = xyz.y, Z = xyz.z * 1.08883;
+    Vec3d rgb(3.2404542 * X - 1.5371385 * Y - 0.4985314 * Z, -0.9692660 * X + 1.8760108 * Y + 0.0415560 * Z,
+              0.0556434 * X - 0.2040259 * Y + 1.0572252 * Z);
+    for (int c = 0; c < 3; ++c) rgb[c] = std::clamp(rgb[c], 0., 1.);
+    return Lab(rgb);
+  }
+  double Feature(const Image& image, int x, int y, bool isEdge) const {
+    const double sigma = 0.5 * 0.082 * ppd_;
+    const int radius = static_cast<int>(std::ceil(3 * sigma));
+    double response[2];
+    for (const bool alongX : {true, false}) {
+      double positive = 0, negative = 0, positiveSum = 0, negativeSum = 0;
+      for (int v = -radius; v <= radius; ++v) {
+        for (int u = -radius; u <= radius; ++u) {
+          const double along = alongX ? u : v, gaussian = std::exp(-(u * u + v * v) / (2 * sigma * sigma));
+          const double weight = (isEdge ? -along : along * along / (sigma * sigma) - 1) * gaussian;
+          const double value = Opponent(image, x + u, y + v).x;
+          (weight > 0 ? positive : negative) += std::abs(weight);
+          (weight > 0 ? positiveSum : negativeSum) += std::abs(weight) * value;
+        }
+      }
+      response[alongX ? 0 : 1] = positiveSum / positive - negativeSum / negative;
+    }
+    return std::hypot(response[0], response[1]);
+  }
+
+  double ppd_;
+};
+
+// The separable filters, the fixed scales and the inverses in use against plain sums in double precision.
+TEST(Flip, IsWhatThePapersFormulasGive) {
+  const Image reference = RandomImage(40, 32, 21, 1.f);
+  Image test = RandomImage(40, 32, 22, 1.f);
+  for (int y = 0; y < 32; ++y)  // a half that differs little, one that differs much
+    for (int x = 0; x < 20; ++x) test.SetColor(x, y, 0.9f * reference.ColorAt(x, y) + 0.1f * test.ColorAt(x, y));
+  for (const double ppd : {67., 20.}) {
+    const Image map = FlipReference(reference, FlipRange::Low, ppd).Compare(test).map;
+    const DirectFlip direct(ppd);
+    for (const auto& [x, y] :
+         {std::pair(0, 0), std::pair(5, 16), std::pair(19, 9), std::pair(22, 20), std::pair(39, 31)})
+      EXPECT_NEAR(map.At(x, y, 0), direct.At(reference, test, x, y), 2e-4) << x << ", " << y;
+  }
 }
 
 TEST(Flip, TheViewerOfThePapers) { EXPECT_NEAR(PixelsPerDegree(), 67.02, 0.005); }
