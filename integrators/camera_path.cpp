@@ -30,10 +30,15 @@ Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction*
   return EmittedAlong(scene, ray, hit, [&](int index) -> double {
     if (last.isSpecular || direct.technique == DirectTechnique::Bsdf) return 1;
     if (direct.technique == DirectTechnique::Light) return 0;
-    const Light& light = *scene.Lights()[static_cast<size_t>(index)];
-    const double lightPdf = scene.Picker().ProbabilityFor(last.at, index) * light.Pdf_Li(last.at, ray.d, hit);
-    return PowerHeuristic(last.pdf, direct.SamplesOf(light) * lightPdf);
+    return PowerHeuristic(last.pdf, LightPdf(scene, last.at, index, ray.d, hit, direct));
   });
+}
+
+double LightPdf(const Scene& scene, const LightContext& at, int index, const Vec3& wi, const SurfaceInteraction* hit,
+                const DirectLighting& direct) {
+  const Light& light = *scene.Lights()[static_cast<size_t>(index)];
+  return direct.SamplesOf(light) * scene.Picker().ProbabilityFor(at, index) *
+         (light.IsDelta() ? 1 : light.Pdf_Li(at, wi, hit));
 }
 
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,

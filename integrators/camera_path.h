@@ -44,6 +44,11 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
+/// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds the
+/// direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.
+double LightPdf(const Scene& scene, const LightContext& at, int light, const Vec3& wi, const SurfaceInteraction* hit,
+                const DirectLighting& direct);
+
 /// Where light is asked for, as lights see it: for both of the above.
 LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
                        const DirectLighting& direct = {});

@@ -1,5 +1,6 @@
 #include "integrators/hybrid.h"
 
+#include "integrators/emission_ratio.h"
 #include "integrators/pixel_loop.h"
 #include "src/base/error.h"
 #include "src/photons/coverage.h"
@@ -10,22 +11,6 @@
 namespace dapple {
 
 namespace {
-
-/// The density of an emitted ray over area at its first surface, divided by the cosine there, in units of the density
-/// per solid angle with which that surface would look for the light (discrete where the light is). `pdf` is that of
-/// `EmissionSampler`; `cosAtLight` is 1 without a surface.
-double EmissionRatio(double pdf, double cosAtLight, bool isPoint, double distanceSquared) {
-  return isPoint ? pdf / distanceSquared : pdf / cosAtLight;
-}
-
-/// The point of an area light from which a ray was emitted, as far as `Light::Pdf_Li` asks for it.
-SurfaceInteraction OriginOf(const LeSample& le) {
-  SurfaceInteraction origin;
-  origin.p = le.ray.o;
-  origin.ng = le.n;
-  origin.primitive = le.primitive;
-  return origin;
-}
 
 /// A weight as photons carry it: huge, but finite.
 float ToFloatRange(double weight) { return static_cast<float>(std::min(weight, 1e30)); }
@@ -241,9 +226,7 @@ Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceIntera
 
 double HybridIntegrator::LightPdf(const LightContext& at, int index, const Vec3& wi,
                                   const SurfaceInteraction* hit) const {
-  const Light& light = *scene_->Lights()[static_cast<size_t>(index)];
-  return options_.direct.SamplesOf(light) * scene_->Picker().ProbabilityFor(at, index) *
-         (light.IsDelta() ? 1 : light.Pdf_Li(at, wi, hit));
+  return dapple::LightPdf(*scene_, at, index, wi, hit, options_.direct);
 }
 
 Color HybridIntegrator::SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,

@@ -53,8 +53,8 @@ PassStats& PassStats::operator+=(const PassStats& s) {
 }
 
 std::vector<std::pair<std::string, std::string>> DescribeOptions(const IntegratorOptions& options) {
-  // All members by name: one that is added and not told here does not compile.
-  const auto& [maxDepth, photonsPerPass, radius, radiusScale, kernel, guideEmission, direct] = options;
+  // All members by name: one that is added and not told here does not compile. The guide follows from the others.
+  const auto& [maxDepth, photonsPerPass, radius, radiusScale, kernel, guideEmission, guide, direct] = options;
   const auto& [technique, lightSamples] = direct;
   return {
       {"max-depth", fmt::format("{}", maxDepth)},
@@ -79,29 +79,6 @@ std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const Integrat
   if (name == "sppm") return std::make_unique<SppmIntegrator>(options);
   if (name == "hybrid") return std::make_unique<HybridIntegrator>(options);
   throw Error(fmt::format("unknown integrator \"{}\"; expected auto, {}", name, fmt::join(IntegratorNames(), ", ")));
-}
-
-IntegratorChoice SelectIntegrator(const SceneFacts& facts) {
-  if (!facts.MayHaveCaustics()) return {"path", "no specular surface throws light on another one: no caustics"};
-  if (facts.hasDeltaLight)
-    return {"hybrid", "a specular surface and a light of no extent: paths cannot find its caustics"};
-  constexpr double kSmallShare = 0.05;
-  if (facts.smallestLightShare < kSmallShare)
-    return {"hybrid",
-            fmt::format("a specular surface and a light that covers {:.2g} of all directions: paths seldom find its "
-                        "caustics",
-                        facts.smallestLightShare)};
-  return {"path", "only large lights: paths find their caustics by chance"};
-}
-
-IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, DirectTechnique direct) {
-  if (!requested.empty() && requested != "auto") return {std::string(requested), "asked for"};
-  const std::string& fromScene = scene.Settings().integrator;
-  for (std::string_view known : IntegratorNames())
-    if (requested.empty() && fromScene == known) return {fromScene, "the scene asks for it"};
-  const IntegratorChoice choice = SelectIntegrator(scene.Facts());
-  if (choice.name != "hybrid" || direct == DirectTechnique::Mis) return choice;
-  return {"sppm", choice.reason + "; direct light by one technique alone"};
 }
 
 }  // namespace dapple

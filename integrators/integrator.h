@@ -60,6 +60,8 @@ struct DirectLighting {
   int SamplesOf(const Light& light) const { return lightSamples.value_or(light.SampleCount()); }
 };
 
+class EmissionGuide;
+
 /// What the user may set; absent values follow from the scene.
 struct IntegratorOptions {
   int maxDepth = 32;                  ///< scattering events on a path from light to camera
@@ -68,6 +70,8 @@ struct IntegratorOptions {
   double radiusScale = 1;             ///< factor on the learned radii (gather_radius.h), where `radius` is absent
   KernelShape kernel = KernelShape::Epanechnikov;  ///< of density estimates
   bool guideEmission = true;  ///< a pilot learns where photons are of use (src/photons/emission_guide.h)
+  /// What that pilot has learned already, of this scene, depth and seed, without final gathers; null: not yet.
+  std::shared_ptr<const EmissionGuide> guide;
   DirectLighting direct;
 };
 
@@ -95,20 +99,5 @@ std::vector<std::string_view> IntegratorNames();
 
 /// Throws `Error` for an unknown name, listing those known.
 std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const IntegratorOptions& options);
-
-/// An integrator's name, and in a few words why it was chosen.
-struct IntegratorChoice {
-  std::string name;
-  std::string reason;
-};
-
-/// The rule behind "auto": photons where a specular surface and a small or delta light can make caustics, paths
-/// otherwise.
-IntegratorChoice SelectIntegrator(const SceneFacts& facts);
-
-/// The user's name, else the scene's where Dapple has it, else `SelectIntegrator`. `requested` may be empty or "auto".
-/// Where the rule decides and direct light shall be found by one technique alone, `hybrid`, which joins all, gives way
-/// to `sppm`.
-IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, DirectTechnique direct);
 
 }  // namespace dapple

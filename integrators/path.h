@@ -17,9 +17,10 @@ class PathIntegrator final : public Integrator {
   PassStats RenderPass(int pass, Film& film) const override;
   int DefaultPasses() const override { return 64; }
 
- private:
+  /// What one path brings back along a ray from the camera; once prepared. Uses the blocks of the sampler after 0.
   Color Radiance(Ray ray, Sampler& sampler, PassStats& stats) const;
 
+ private:
   int maxDepth_;
   DirectLighting direct_;
   const Scene* scene_ = nullptr;

@@ -40,12 +40,16 @@ int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options) {
   return options.photonsPerPass ? *options.photonsPerPass : Pixels(scene);
 }
 
+EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed) {
+  if (!options.guideEmission) return {};
+  if (options.guide && finalGathers == 0) return *options.guide;
+  return LearnEmissionGuide(scene, options.maxDepth, finalGathers, seed);
+}
+
 PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed)
     // One scattering before the photon lands, one where it is gathered.
     : isNeeded(scene.Facts().CanUsePhotons() && options.maxDepth >= 2),
-      emission(scene, isNeeded && options.guideEmission
-                          ? LearnEmissionGuide(scene, options.maxDepth, finalGathers, seed)
-                          : EmissionGuide()) {
+      emission(scene, isNeeded ? GuideOf(scene, options, finalGathers, seed) : EmissionGuide()) {
   if (!isNeeded) return;
   const PathWork work = EstimateWork(scene, emission, options.maxDepth, finalGathers, seed);
   if (options.photonsPerPass) {

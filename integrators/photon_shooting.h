@@ -15,6 +15,9 @@ namespace dapple {
 /// Light paths of a pass where nothing is gathered: as asked for, else one a pixel of the picture.
 int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options);
 
+/// What the pilot of emission has learned or learns now, as the options say; `finalGathers` as below.
+EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
+
 /// How photons are emitted, how many, within what radius they are gathered, and by how many camera paths.
 struct PhotonPlan {
   /// Learned by pilots whose length follows, as all else, from the arguments alone. `finalGathers`: diffuse scatterings

@@ -275,18 +275,22 @@ LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
 RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics) {
   const RenderSettings& settings = scene.Settings();
   RenderPlan plan;
-  plan.choice = ResolveIntegrator(options.integrator, scene, options.direct);
-  if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
+  plan.seed = Either(options.seed, settings.seed).value_or(0);
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
-  // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
-  const bool isTunedByFile = plan.choice.name == "sppm";
-  plan.options.photonsPerPass = isTunedByFile ? Either(options.photons, settings.photonsPerIteration) : options.photons;
-  plan.options.radius = isTunedByFile ? Either(options.radius, settings.radius) : options.radius;
+  plan.options.photonsPerPass = options.photons;
+  plan.options.radius = options.radius;
   plan.options.kernel = options.kernel;
   plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
+  plan.choice = ResolveIntegrator(options.integrator, scene, plan.options, static_cast<uint64_t>(int64_t{plan.seed}));
+  plan.options.guide = plan.choice.guide;
+  if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
+  // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
+  if (plan.choice.name == "sppm") {
+    plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
+    plan.options.radius = Either(options.radius, settings.radius);
+  }
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);
-  plan.seed = Either(options.seed, settings.seed).value_or(0);
   SetBudget(settings, options, &plan);
   return plan;
 }

@@ -14,7 +14,7 @@
 
 #include <CLI/App.hpp>
 
-#include "integrators/integrator.h"
+#include "integrators/select.h"
 #include "src/io/build_scene.h"
 #include "src/render/driver.h"
 

@@ -1,0 +1,67 @@
+#include "integrators/select.h"
+
+#include <fmt/format.h>
+
+#include "integrators/photon_shooting.h"
+#include "integrators/rare_light.h"
+
+namespace dapple {
+
+namespace {
+
+/// By how much photons must lower the variance of a pass to be worth it: a pass with photons takes two to three times
+/// as long (docs/performance.md).
+constexpr double kCostOfPhotons = 3;
+
+/// Surfaces rougher than this (GGX alpha) throw light as wide as diffuse ones, nearly.
+constexpr float kPolished = 0.3f;
+
+/// A light that covers a smaller share of all directions is small.
+constexpr double kSmallShare = 0.05;
+
+/// Why the scene's facts alone decide for paths; empty where they do not.
+std::string_view WhyPathsFindAll(const SceneFacts& facts, int maxDepth) {
+  if (!facts.EmitsLight()) return "nothing emits light";
+  if (!facts.hasNonSpecular) return "no surface could receive photons";
+  if (maxDepth < 2) return "direct light alone is asked for";
+  if (facts.hasSpecular) return "";
+  if (facts.minRoughness >= kPolished)
+    return "no mirror, glass or polished surface throws light on another: no caustics";
+  if (!facts.hasDeltaLight && facts.smallestLightShare >= kSmallShare)
+    return "only large lights, and no smooth mirror or glass: no sharp caustics";
+  return "";
+}
+
+/// As few digits as tell.
+std::string Digits(double x) { return x < 9.95 ? fmt::format("{:.2g}", x) : fmt::format("{:.0f}", x); }
+std::string Percent(double share) { return share < 1e-4 ? "less than 0.01 %" : Digits(100 * share) + " %"; }
+
+}  // namespace
+
+IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed) {
+  if (const std::string_view why = WhyPathsFindAll(scene.Facts(), options.maxDepth); !why.empty())
+    return {"path", std::string(why), nullptr};
+  IntegratorOptions guided = options;
+  guided.guide = std::make_shared<const EmissionGuide>(GuideOf(scene, options, 0, seed));
+  const RareLight rare = FindRareLight(scene, guided, seed);
+  const std::string finding = fmt::format(
+      "by a pilot {} of the light seen comes in ways that paths find seldom; photons lower the variance of a "
+      "pass {} times",
+      Percent(rare.share), Digits(rare.Gain()));
+  if (rare.share == 0) return {"path", "a pilot of light paths met no light that paths find seldom", nullptr};
+  if (rare.Gain() < kCostOfPhotons) return {"path", finding + ", less than they cost", nullptr};
+  if (options.direct.technique != DirectTechnique::Mis)
+    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide};
+  return {"hybrid", finding, guided.guide};
+}
+
+IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, const IntegratorOptions& options,
+                                   uint64_t seed) {
+  if (!requested.empty() && requested != "auto") return {std::string(requested), "asked for", nullptr};
+  const std::string& fromScene = scene.Settings().integrator;
+  for (std::string_view known : IntegratorNames())
+    if (requested.empty() && fromScene == known) return {fromScene, "the scene asks for it", nullptr};
+  return SelectIntegrator(scene, options, seed);
+}
+
+}  // namespace dapple

@@ -1,0 +1,27 @@
+// Which algorithm renders a scene, and why: the rule behind "auto".
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "integrators/integrator.h"
+
+namespace dapple {
+
+/// An integrator's name, and in a few words why it was chosen.
+struct IntegratorChoice {
+  std::string name;
+  std::string reason;
+  std::shared_ptr<const EmissionGuide> guide;  ///< what a pilot learned on the way, for `IntegratorOptions`; or null
+};
+
+/// "path" where what the scene holds makes no light that paths find seldom; else a pilot (rare_light.h) tells whether
+/// photons are worth what they cost: then "hybrid". Where direct light shall be found by one technique alone, "hybrid",
+/// which joins all, gives way to "sppm". Depends on scene, options and seed alone.
+IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
+
+/// The user's name, else the scene's where Dapple has it, else `SelectIntegrator`. `requested` may be empty or "auto".
+IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, const IntegratorOptions& options,
+                                   uint64_t seed);
+
+}  // namespace dapple
