@@ -1,6 +1,7 @@
 #include "src/app/convergence_study.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -78,8 +79,9 @@ class StudyRunner {
     return *scene;
   }
 
-  RenderPlan PlanOf(const std::string& integrator, const Scene& scene) {
+  RenderPlan PlanOf(const std::string& integrator, const Scene& scene, std::optional<int> seed = {}) {
     SceneOptions options = options_.scene;
+    if (seed) options.seed = seed;
     options.integrator = integrator;
     return MakePlan(scene, options, diagnostics_);
   }
@@ -94,6 +96,7 @@ class StudyRunner {
         contender.name = integrator == "auto" ? fmt::format("auto ({})", contender.integrator) : integrator;
         if (!strategy.empty()) contender.name += " " + strategy;
         study_.convergence.contenders.push_back(contender);
+        requested_.push_back(integrator);
       }
     }
   }
@@ -143,10 +146,13 @@ class StudyRunner {
   void RunContender(size_t index, int seed, bool keepsPictures, const ErrorMeter& meter) {
     Contender& contender = study_.convergence.contenders[index];
     const Scene& scene = SceneOf(contender.strategy);
-    const RenderPlan plan = PlanOf(contender.integrator, scene);
+    // The rule behind "auto" may look at the scene for a while, and that is a part of what it costs.
+    const auto begin = std::chrono::steady_clock::now();
+    const RenderPlan plan = PlanOf(requested_[index], scene, seed);
+    const double planSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     Film film = FilmOf(scene);
-    const ConvergenceRun run =
-        RunWithSnapshots(scene, static_cast<uint64_t>(int64_t{seed}), *plan.integrator, times_, film, {}, &stop_);
+    const ConvergenceRun run = RunWithSnapshots(scene, static_cast<uint64_t>(int64_t{seed}), *plan.integrator, times_,
+                                                film, {}, &stop_, planSeconds);
     if (run.stopped) return;
     SeedRun result{seed, run.prepareSeconds, run.seconds, run.snapshotSeconds, run.passes, {}};
     for (const Snapshot& snapshot : run.snapshots) {
@@ -178,6 +184,7 @@ class StudyRunner {
   std::string name_;
   Diagnostics diagnostics_;
   std::map<std::string, std::unique_ptr<Scene>> scenes_;  ///< by strategy
+  std::vector<std::string> requested_;                    ///< of each contender; "auto" too
   Study study_;
 };
 

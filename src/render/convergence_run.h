@@ -35,10 +35,11 @@ struct ConvergenceRun {
 /// Renders until the last of `times` (ascending, > 0), to within a pass, and takes a snapshot after the first pass that
 /// ends at one of them or later; where a pass spans several times the last of them has it. The last snapshot is that of
 /// all passes. `film` is empty and holds the passes in the end. `onPass` is called after each pass with the seconds
-/// so far; its time does not count.
+/// so far; its time does not count. `secondsBefore` were spent on this run already (on choosing the integrator) and
+/// count as preparation.
 ConvergenceRun RunWithSnapshots(const Scene& scene, uint64_t seed, Integrator& integrator,
                                 const std::vector<double>& times, Film& film,
                                 const std::function<void(double seconds)>& onPass = {},
-                                const std::atomic<bool>* stop = nullptr);
+                                const std::atomic<bool>* stop = nullptr, double secondsBefore = 0);
 
 }  // namespace dapple

@@ -109,6 +109,18 @@ TEST(ConvergenceRun, APassThatIsLongerThanTheBudgetIsTheOnlyOne) {
   EXPECT_EQ(run.snapshots[0].timeIndex, 1);
 }
 
+TEST(ConvergenceRun, WhatWasSpentBeforeCounts) {
+  const auto scene = Load("ring.pbrt", {4, 4});
+  SleepingIntegrator integrator(0.01);
+  Film film = FilmOf(*scene);
+  const ConvergenceRun run = RunWithSnapshots(*scene, 0, integrator, {100, 100.05}, film, {}, nullptr, 100);
+  EXPECT_GE(run.prepareSeconds, 100);
+  EXPECT_GE(run.seconds, 100 + 0.01 * run.passes);
+  EXPECT_LE(run.passes, 5);
+  EXPECT_EQ(run.snapshots.front().passes, 1);
+  EXPECT_EQ(run.snapshots.back().seconds, run.seconds);
+}
+
 TEST(ConvergenceRun, StopsWhenAskedTo) {
   const auto scene = Load("ring.pbrt", {4, 4});
   SleepingIntegrator integrator(0.005);
