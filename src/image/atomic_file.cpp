@@ -1,12 +1,15 @@
 #include "src/image/atomic_file.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include "src/base/error.h"
@@ -72,6 +75,15 @@ fs::path TemporaryName(const fs::path& target) {
   }
 }
 
+// The process that a temporary file for `target` belongs to, by its name; 0 where it is none.
+pid_t OwnerOf(const fs::path& temporary, const fs::path& target) {
+  const std::string name = temporary.filename().string(), beginning = fmt::format(".{}.", target.filename().string());
+  if (!name.starts_with(beginning) || !name.ends_with(".tmp")) return 0;
+  pid_t owner = 0;
+  std::from_chars(name.data() + beginning.size(), name.data() + name.size(), owner);
+  return owner;
+}
+
 // The rename itself is durable once the folder is; some file systems cannot do this, and then nothing is lost.
 void FlushFolder(const fs::path& target) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -102,6 +114,17 @@ void WriteFileAtomically(const std::string& path, std::initializer_list<std::str
   file.Close();
   file.RenameTo(target);
   FlushFolder(target);
+}
+
+void RemoveStaleTemporaries(const std::string& path) {
+  const fs::path target(path), folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code ignored;
+  std::vector<fs::path> stale;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const pid_t owner = OwnerOf(entry.path(), target);
+    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) stale.push_back(entry.path());
+  }
+  for (const fs::path& file : stale) fs::remove(file, ignored);
 }
 
 }  // namespace dapple

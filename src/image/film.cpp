@@ -13,8 +13,8 @@ namespace dapple {
 
 namespace {
 
-// What stands first in a serialised film; the ranges of its passes follow, and the sums of both halves. All
-// little-endian, as memory is here.
+// What stands first in a serialised film; the ranges of its passes follow, the names of the extra channels with a line
+// end behind each, the sums of both halves, and those of the extra channels. All little-endian, as memory is here.
 struct FilmHeader {
   char mark[8];
   uint32_t version;
@@ -24,10 +24,12 @@ struct FilmHeader {
   double filterRadiusX, filterRadiusY, filterP, filterQ;
   uint64_t passRanges;
   uint64_t nonFinite;
+  uint32_t extraNameBytes;
+  float clamp;  // 0: none
 };
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(PassRange) == 16 && std::is_trivially_copyable_v<PassRange>);
-static_assert(sizeof(FilmHeader) == 88 && std::is_trivially_copyable_v<FilmHeader>);
+static_assert(sizeof(FilmHeader) == 96 && std::is_trivially_copyable_v<FilmHeader>);
 
 constexpr char kMark[8] = {'D', 'A', 'P', 'P', 'L', 'E', 'F', 'M'};
 constexpr uint32_t kVersion = 2;
@@ -47,6 +49,13 @@ PassRanges ReadPasses(std::span<const std::byte> bytes, const FileLocation& loca
     last = range.end;
   }
   return passes;
+}
+
+std::vector<std::string> SplitLines(std::string_view text) {
+  std::vector<std::string> lines;
+  for (size_t end; (end = text.find('\n')) != std::string_view::npos; text.remove_prefix(end + 1))
+    lines.emplace_back(text.substr(0, end));
+  return lines;
 }
 
 void CheckSizes(const Vec2i& resolution, const PixelBounds& crop, const FileLocation& location) {
@@ -102,6 +111,23 @@ Film::Film(const Vec2i& fullResolution, const PixelBounds& crop, const Filter& f
   }
 }
 
+void Film::AddExtraChannels(const std::vector<std::string>& names) {
+  assert(passes_.IsEmpty() && extraChannels_.empty());
+  try {
+    extras_.resize(static_cast<size_t>(crop_.Area()) * names.size());
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("not enough memory for {} extra channels of {} pixels", names.size(), crop_.Area()));
+  }
+  extraChannels_ = names;
+}
+
+void Film::AddExtras(const Vec2i& pixel, std::span<const float> values) {
+  assert(crop_.Contains(pixel) && values.size() == extraChannels_.size());
+  if (!std::ranges::all_of(values, FixedPoint::IsInRange)) return Refuse();
+  FixedPoint* const sums = extras_.data() + Index(pixel.x, pixel.y) * values.size();
+  for (size_t i = 0; i < values.size(); ++i) sums[i] += FixedPoint::FromFloat(values[i]);
+}
+
 Imath::Box2d Film::SplatBounds() const {
   return {Vec2d(crop_.min) + Vec2d(0.5) - filter_.Radius(), Vec2d(crop_.max) - Vec2d(0.5) + filter_.Radius()};
 }
@@ -132,7 +158,8 @@ void Film::AddSplat(const Vec2& position, const Color& value, int64_t pass) {
   if (rows.first >= rows.end || columns.first >= columns.end) return;
   const PixelBounds pixels{{columns.first, rows.first}, {columns.end, rows.end}};
   if (filter_.IsUnitBox()) {
-    return ForEachLockedTile(pixels, [&](const PixelBounds& one) { Add(sums[Index(one.min.x, one.min.y)], value); });
+    return ForEachLockedTile(pixels,
+                             [&](const PixelBounds& one) { Add(sums[Index(one.min.x, one.min.y)], Clamped(value)); });
   }
   std::array<float, kMaxFootprint> weightsX, weightsY;
   for (int x = columns.first; x < columns.end; ++x)
@@ -143,7 +170,7 @@ void Film::AddSplat(const Vec2& position, const Color& value, int64_t pass) {
     for (int y = part.min.y; y < part.max.y; ++y) {
       const Color rowValue = value * weightsY[static_cast<size_t>(y - rows.first)];
       for (int x = part.min.x; x < part.max.x; ++x)
-        Add(sums[Index(x, y)], rowValue * weightsX[static_cast<size_t>(x - columns.first)]);
+        Add(sums[Index(x, y)], Clamped(rowValue * weightsX[static_cast<size_t>(x - columns.first)]));
     }
   });
 }
@@ -172,6 +199,16 @@ Image Film::ToImage() const {
   });
 }
 
+Image Film::ExtraImage() const {
+  Image image(crop_.Width(), crop_.Height(), extraChannels_);
+  image.origin = crop_.min;
+  image.fullSize = fullResolution_;
+  const double passes = static_cast<double>(std::max<int64_t>(PassCount(), 1));
+  const std::span<float> values = image.Values();
+  for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(extras_[i].ToDouble() / passes);
+  return image;
+}
+
 Image Film::HalfImage(int half) const {
   assert(half == 0 || half == 1);
   return MakeImage(PassCount(half), [&](size_t i) { return sums_[half][i]; });
@@ -193,8 +230,9 @@ std::optional<double> Film::NoiseEstimate() const {
 }
 
 void Film::Merge(const Film& other) {
-  if (fullResolution_ != other.fullResolution_ || crop_ != other.crop_ || !(filter_ == other.filter_))
-    throw Error("cannot add films that differ: expected the same resolution, crop and filter");
+  if (fullResolution_ != other.fullResolution_ || crop_ != other.crop_ || !(filter_ == other.filter_) ||
+      clamp_ != other.clamp_ || extraChannels_ != other.extraChannels_)
+    throw Error("cannot add films that differ: expected the same resolution, crop, filter, clamp and extra channels");
   if (const auto common = passes_.FirstCommon(other.passes_))
     throw Error(fmt::format("cannot add films that both hold {}", common->ToString()));
   for (const PassRange& range : other.passes_.All()) passes_.Add(range);
@@ -202,7 +240,14 @@ void Film::Merge(const Film& other) {
     for (size_t i = 0; i < sums_[half].size(); ++i)
       for (int c = 0; c < Color::kComponents; ++c) sums_[half][i][c] += other.sums_[half][i][c];
   }
+  for (size_t i = 0; i < extras_.size(); ++i) extras_[i] += other.extras_[i];
   nonFinite_ += other.nonFinite_;
+}
+
+std::string Film::ExtraNames() const {
+  std::string names;
+  for (const std::string& name : extraChannels_) names += name + '\n';
+  return names;
 }
 
 std::vector<std::byte> Film::Serialize() const {
@@ -223,9 +268,12 @@ std::vector<std::byte> Film::Serialize() const {
   header.filterQ = filter.q;
   header.passRanges = passes_.All().size();
   header.nonFinite = nonFinite_;
+  const std::string names = ExtraNames();
+  header.extraNameBytes = static_cast<uint32_t>(names.size());
+  header.clamp = clamp_.value_or(0);
   const std::vector<PassRange>& ranges = passes_.All();
-  std::vector<std::byte> bytes(sizeof(header) + ranges.size() * sizeof(PassRange) +
-                               2 * sums_[0].size() * sizeof(PixelSums));
+  std::vector<std::byte> bytes(sizeof(header) + ranges.size() * sizeof(PassRange) + names.size() +
+                               2 * sums_[0].size() * sizeof(PixelSums) + extras_.size() * sizeof(FixedPoint));
   size_t end = 0;
   const auto append = [&](std::span<const std::byte> piece) {
     if (!piece.empty()) std::memcpy(bytes.data() + end, piece.data(), piece.size());
@@ -233,7 +281,9 @@ std::vector<std::byte> Film::Serialize() const {
   };
   append(std::as_bytes(std::span(&header, 1)));
   append(std::as_bytes(std::span(ranges)));
+  append(std::as_bytes(std::span(names)));
   for (const auto& sums : sums_) append(std::as_bytes(std::span(sums)));
+  append(std::as_bytes(std::span(extras_)));
   return bytes;
 }
 
@@ -247,17 +297,33 @@ Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& loc
   const Vec2i resolution(header.width, header.height);
   const PixelBounds crop{{header.cropMinX, header.cropMinY}, {header.cropMaxX, header.cropMaxY}};
   CheckSizes(resolution, crop, location);
-  const size_t sumBytes = static_cast<size_t>(crop.Area()) * sizeof(PixelSums);
-  const size_t rangeBytes = std::min<size_t>(header.passRanges, bytes.size()) * sizeof(PassRange);
-  const size_t expected = sizeof(header) + rangeBytes + 2 * sumBytes;
-  if (bytes.size() != expected)
-    throw Error(location, fmt::format("stored film of {} bytes, expected {}", bytes.size(), expected));
+  std::span<const std::byte> rest = bytes.subspan(sizeof(header));
+  const auto take = [&](size_t count) {
+    if (count > rest.size()) throw Error(location, "the stored film ends early");
+    const std::span<const std::byte> taken = rest.first(count);
+    rest = rest.subspan(count);
+    return taken;
+  };
+  const PassRanges passes =
+      ReadPasses(take(std::min<size_t>(header.passRanges, rest.size()) * sizeof(PassRange)), location);
+  const std::span<const std::byte> names = take(header.extraNameBytes);
+  const auto extraChannels = SplitLines({reinterpret_cast<const char*>(names.data()), names.size()});
+  const auto pixels = static_cast<size_t>(crop.Area());
+  const size_t sumBytes = pixels * (2 * sizeof(PixelSums) + extraChannels.size() * sizeof(FixedPoint));
+  if (rest.size() != sumBytes)
+    throw Error(location, fmt::format("stored film with {} bytes of sums, expected {}", rest.size(), sumBytes));
   const Filter filter = Filter::FromDescription(
       {header.filterKind, header.filterRadiusX, header.filterRadiusY, header.filterP, header.filterQ}, location);
   Film film(resolution, crop, filter, location);
-  film.passes_ = ReadPasses(bytes.subspan(sizeof(header), rangeBytes), location);
-  for (size_t half = 0; half < film.sums_.size(); ++half)
-    std::memcpy(film.sums_[half].data(), bytes.data() + sizeof(header) + rangeBytes + half * sumBytes, sumBytes);
+  if (header.clamp > 0) film.ClampTo(header.clamp);
+  if (!extraChannels.empty()) film.AddExtraChannels(extraChannels);
+  const auto read = [&](auto& sums) {
+    const std::span<const std::byte> from = take(std::as_bytes(std::span(sums)).size());
+    if (!from.empty()) std::memcpy(sums.data(), from.data(), from.size());
+  };
+  for (auto& sums : film.sums_) read(sums);
+  read(film.extras_);
+  film.passes_ = passes;
   film.nonFinite_ = header.nonFinite;
   return film;
 }

@@ -8,16 +8,22 @@
 //   film.AddSample(pixel, radiance * weight / samplesPerPass, pass);   // camera: offset and weight from Filter::Sample
 //   film.AddSplat(position, contribution / pathsPerPass, pass);        // light tracing
 //   film.FinishPass(pass);
+//
+// Beside the radiance a film may have extra channels, whose means are over all samples of all passes, in exact sums
+// too.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "src/base/color.h"
@@ -67,6 +73,17 @@ class Film {
   const Vec2i& FullResolution() const { return fullResolution_; }
   const PixelBounds& Crop() const { return crop_; }
   const Filter& PixelFilter() const { return filter_; }
+
+  /// From here on no single sample or splat adds more than `limit` (> 0) in any channel to a pixel's value of a pass:
+  /// it is scaled down as a whole. That loses energy, so nothing is clamped without it.
+  void ClampTo(float limit) { clamp_ = limit; }
+  std::optional<float> Clamp() const { return clamp_; }
+
+  /// Adds channels that are filled by `AddExtras`; 16 bytes a pixel each. Once, before the first pass. Throws `Error`
+  /// where the memory does not suffice.
+  void AddExtraChannels(const std::vector<std::string>& names);
+  const std::vector<std::string>& ExtraChannels() const { return extraChannels_; }
+
   /// Splats outside this rectangle (continuous pixel coordinates: the crop grown by the filter's radius) touch no
   /// pixel. Light tracing must send splats to all of it, beyond the edges of the picture too, or its border pixels turn
   /// dark.
@@ -75,6 +92,9 @@ class Film {
   /// Adds to `pixel` (inside the crop) in the sum of `pass`. One sample of n in a pass carries the weight 1/n.
   /// Not atomic: one thread owns a pixel at a time, and no splats are added meanwhile.
   void AddSample(const Vec2i& pixel, const Color& value, int64_t pass);
+
+  /// Adds to the pixel's extra channels, one value each. As `AddSample`, but all passes have one sum.
+  void AddExtras(const Vec2i& pixel, std::span<const float> values);
 
   /// Spreads `value` over the pixels around `position` (pixel (x, y) covers [x, x+1) x [y, y+1)) with the filter's
   /// normalised weights f(centre - position) / integral, per unit of image area in pixels. Any thread may call it at
@@ -92,6 +112,8 @@ class Film {
 
   /// The mean of all passes: R, G, B of the crop, with its place in the picture. Black before the first pass.
   Image ToImage() const;
+  /// The means of the extra channels, under their names.
+  Image ExtraImage() const;
   /// The mean of the even (0) or odd (1) passes alone.
   Image HalfImage(int half) const;
   /// Estimates the relative MSE of `ToImage` that is due to noise (bias is not seen): the mean over pixels and channels
@@ -101,8 +123,8 @@ class Film {
   /// if passes are independent, and for n0 = n1 whenever the halves are. Nothing before both halves have a pass.
   std::optional<double> NoiseEstimate() const;
 
-  /// Adds the sums and passes of another film of the same resolution, crop and filter, exactly. Throws `Error` where
-  /// they differ, or where a pass is in both.
+  /// Adds the sums and passes of another film of the same resolution, crop, filter, clamp and extra channels, exactly.
+  /// Throws `Error` where they differ, or where a pass is in both.
   void Merge(const Film& other);
 
   /// The whole state as bytes, and back. `Deserialize` throws `Error` at `location` where the bytes are not a film of
@@ -121,17 +143,23 @@ class Film {
     return static_cast<size_t>(y - crop_.min.y) * static_cast<size_t>(crop_.Width()) +
            static_cast<size_t>(x - crop_.min.x);
   }
+  /// `value`, scaled down where it is beyond the clamp.
+  Color Clamped(const Color& value) const;
   void Add(PixelSums& sums, const Color& value);
   template <typename F>
   void ForEachLockedTile(const PixelBounds& pixels, F addToPixels);
   void Refuse() { std::atomic_ref(nonFinite_).fetch_add(1, std::memory_order_relaxed); }
   template <typename F>
   Image MakeImage(int64_t passes, F sumOfPixel) const;
+  std::string ExtraNames() const;
 
   Vec2i fullResolution_;
   PixelBounds crop_;
   Filter filter_;
+  std::optional<float> clamp_;
+  std::vector<std::string> extraChannels_;
   std::array<std::vector<PixelSums>, 2> sums_;
+  std::vector<FixedPoint> extras_;  // pixels in rows, channels interleaved
   PassRanges passes_;
   uint64_t nonFinite_ = 0;
   std::vector<uint8_t> tileLocks_;  // one for each kTileSide x kTileSide pixels; 1 while a splat is added there
@@ -160,6 +188,12 @@ inline double FixedPoint::ToDouble() const {
   return static_cast<double>(value) * 0x1p-64;
 }
 
+inline Color Film::Clamped(const Color& value) const {
+  if (!clamp_) return value;
+  const float largest = std::max({std::abs(value.r), std::abs(value.g), std::abs(value.b)});
+  return largest > *clamp_ ? value * (*clamp_ / largest) : value;
+}
+
 inline void Film::Add(PixelSums& sums, const Color& value) {
   if (!(FixedPoint::IsInRange(value.r) && FixedPoint::IsInRange(value.g) && FixedPoint::IsInRange(value.b)))
     return Refuse();
@@ -168,7 +202,7 @@ inline void Film::Add(PixelSums& sums, const Color& value) {
 
 inline void Film::AddSample(const Vec2i& pixel, const Color& value, int64_t pass) {
   assert(crop_.Contains(pixel));
-  Add(sums_[HalfOf(pass)][Index(pixel.x, pixel.y)], value);
+  Add(sums_[HalfOf(pass)][Index(pixel.x, pixel.y)], Clamped(value));
 }
 
 }  // namespace dapple

@@ -64,6 +64,10 @@ class Camera {
 
   /// Where the camera stands (render space).
   virtual Vec3 Position() const = 0;
+
+  /// How deep a point (render space) lies in the picture, in units of camera space: its z there, along the view. Of
+  /// cameras that look all around: its distance.
+  virtual float Depth(const Vec3& p) const = 0;
 };
 
 }  // namespace dapple

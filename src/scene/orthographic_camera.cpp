@@ -85,4 +85,6 @@ WePdf OrthographicCamera::Pdf_We(const Ray& ray) const {
 
 Vec3 OrthographicCamera::Position() const { return ToFloat(frame_.Point(Vec3d(0))); }
 
+float OrthographicCamera::Depth(const Vec3& p) const { return static_cast<float>(frame_.PointToCamera(p).z); }
+
 }  // namespace dapple

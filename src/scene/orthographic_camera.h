@@ -25,6 +25,7 @@ class OrthographicCamera final : public Camera {
   /// Position: per area of the film plane. Direction: 1 without a lens.
   WePdf Pdf_We(const Ray& ray) const override;
   Vec3 Position() const override;
+  float Depth(const Vec3& p) const override;
 
  private:
   bool HasLens() const { return lens_.radius > 0; }

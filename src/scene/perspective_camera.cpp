@@ -102,4 +102,6 @@ WePdf PerspectiveCamera::Pdf_We(const Ray& ray) const {
 
 Vec3 PerspectiveCamera::Position() const { return ToFloat(frame_.Point(Vec3d(0))); }
 
+float PerspectiveCamera::Depth(const Vec3& p) const { return static_cast<float>(frame_.PointToCamera(p).z); }
+
 }  // namespace dapple

@@ -27,6 +27,7 @@ class PerspectiveCamera final : public Camera {
   float We(const Ray& ray, Vec2* film) const override;
   WePdf Pdf_We(const Ray& ray) const override;
   Vec3 Position() const override;
+  float Depth(const Vec3& p) const override;
 
  private:
   /// A ray in camera space: where it passes the lens, and the screen point it shows (its slope, for a pinhole).

@@ -91,4 +91,6 @@ WePdf SphericalCamera::Pdf_We(const Ray& ray) const {
 
 Vec3 SphericalCamera::Position() const { return ToFloat(frame_.Point(Vec3d(0))); }
 
+float SphericalCamera::Depth(const Vec3& p) const { return static_cast<float>(Length(frame_.PointToCamera(p))); }
+
 }  // namespace dapple

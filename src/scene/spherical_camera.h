@@ -27,6 +27,7 @@ class SphericalCamera final : public Camera {
   float We(const Ray& ray, Vec2* film) const override;
   WePdf Pdf_We(const Ray& ray) const override;
   Vec3 Position() const override;
+  float Depth(const Vec3& p) const override;
 
  private:
   Vec3d ToDirection(const Vec2& film) const;

@@ -274,6 +274,49 @@ TEST(Film, StateComesBackFromBytes) {
   EXPECT_FALSE(read == film);
 }
 
+// A pixel's value of a pass is one sample's or a splat's share: at most the clamp, colours keep their hue.
+TEST(Film, AClampBoundsWhatOneSampleOrSplatAdds) {
+  Film film = SmallFilm(Filter::Triangle({1, 1}));
+  film.ClampTo(2);
+  film.AddSample({3, 4}, Color(1, 8, -4), 0);
+  film.AddSample({4, 4}, Color(1, 2, -2), 0);
+  film.AddSplat({6.5f, 6.5f}, Color(100, 50, 0), 0);
+  film.AddSample({3, 4}, Color(INFINITY, 1, 1), 0);
+  film.FinishPass(0);
+  const Image image = film.ToImage();
+  EXPECT_EQ(image.ColorAt(1, 1), Color(0.25f, 2, -1));
+  EXPECT_EQ(image.ColorAt(2, 1), Color(1, 2, -2));
+  EXPECT_EQ(image.ColorAt(4, 3), Color(2, 1, 0));
+  EXPECT_EQ(film.NonFiniteCount(), 1);
+}
+
+TEST(Film, ExtraChannelsAreExactMeansThatAreKeptAndMerged) {
+  const std::vector<std::string> names{"Z", "N.X"};
+  Film whole = SmallFilm(), first = SmallFilm(), second = SmallFilm();
+  for (Film* film : {&whole, &first, &second}) film->AddExtraChannels(names);
+  const auto add = [](Film& film, int pass) {
+    const float z = pass % 2 == 0 ? 0x1p39f : -0x1p39f;
+    film.AddExtras({9, 8}, std::vector<float>{z + static_cast<float>(pass) * 0x1p20f, 0x1p-40f});
+    film.FinishPass(pass);
+  };
+  for (const int pass : {0, 1, 2, 3}) add(whole, pass);
+  for (const int pass : {2, 1}) add(second, pass);
+  for (const int pass : {3, 0}) add(first, pass);
+  first.Merge(second);
+  EXPECT_EQ(first, whole);
+  EXPECT_EQ(Film::Deserialize(whole.Serialize()), whole);
+  const Image image = whole.ExtraImage();
+  EXPECT_EQ(image.ChannelNames(), names);
+  EXPECT_EQ(image.origin, kCrop.min);
+  EXPECT_EQ(image.At(7, 5, 0), 1.5f * 0x1p20f);
+  EXPECT_EQ(image.At(7, 5, 1), 0x1p-40f);
+  EXPECT_EQ(image.At(0, 0, 0), 0);
+  whole.AddExtras({9, 8}, std::vector<float>{1, std::nanf("")});
+  EXPECT_EQ(whole.NonFiniteCount(), 1);
+  EXPECT_EQ(whole.ExtraImage().At(7, 5, 0), 1.5f * 0x1p20f) << "all or nothing of a sample";
+  EXPECT_THROW(whole.Merge(SmallFilm()), Error);
+}
+
 TEST(Film, BytesThatAreNoFilmAreErrors) {
   const std::vector<std::byte> bytes = SmallFilm().Serialize();
   for (size_t length = 0; length < bytes.size(); length += 11)

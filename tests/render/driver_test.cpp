@@ -21,6 +21,7 @@ class BlindCamera : public Camera {
   float We(const Ray&, Vec2*) const override { return 0; }
   WePdf Pdf_We(const Ray&) const override { return {}; }
   Vec3 Position() const override { return Vec3(0); }
+  float Depth(const Vec3&) const override { return 0; }
 };
 
 Scene EmptyScene() {
