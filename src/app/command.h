@@ -7,7 +7,8 @@
 
 namespace dapple {
 
-/// Exit codes. A render that a signal ended early exits with 128 + the signal's number, its picture written.
+/// Exit codes. A render that a signal ended early exits with 128 + the signal's number, its picture and its checkpoint
+/// written.
 inline constexpr int kExitSuccess = 0;
 inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;

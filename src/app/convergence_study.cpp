@@ -14,6 +14,7 @@
 #include "src/app/format.h"
 #include "src/image/false_color.h"
 #include "src/image/metrics.h"
+#include "src/render/aov.h"
 #include "src/render/convergence_run.h"
 #include "src/render/output.h"
 

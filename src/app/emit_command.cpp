@@ -59,7 +59,7 @@ int RunEmit(const EmitCommandOptions& options) {
   const RayFormat format = FormatOf(options.output);
   CheckFolder(options.output);
   const ThreadLimit threads(options.threads);
-  Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  Diagnostics diagnostics(Tell);
   const LoadedScene loaded = Load(options.scene, diagnostics);
   const Scene& scene = *loaded.scene;
   const EmittedRays emitted =

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace dapple {
 
@@ -45,6 +46,8 @@ std::string FormatDuration(double seconds) {
   if (hours == 0) return fmt::format("{}:{:02}", minutes, whole % 60);
   return fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60);
 }
+
+void Tell(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
 
 std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);

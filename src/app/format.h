@@ -21,4 +21,8 @@ std::string FormatBytes(double bytes);
 /// "1 pass", "2 passes".
 std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view many);
 
+/// Writes a line to the error stream. Where nobody reads it any more (a broken pipe) nothing happens: a render is not
+/// lost for want of a listener.
+void Tell(const std::string& line);
+
 }  // namespace dapple

@@ -114,7 +114,7 @@ void PrintSkips(const Scene& scene, const RenderPlan& plan) {
 
 int RunInfo(const SceneOptions& options) {
   const ThreadLimit threads(options.threads);
-  Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  Diagnostics diagnostics(Tell);
   const LoadedScene loaded = Load(options, diagnostics);
   const RenderPlan plan = MakePlan(*loaded.scene, options, diagnostics);
   PrintLine("scene", options.scene);

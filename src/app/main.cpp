@@ -1,6 +1,9 @@
 // The `dapple` program: finds the subcommand, runs it, and turns what goes wrong into one line and an exit code.
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <new>
 #include <string>
 #include <vector>
@@ -19,7 +22,7 @@ namespace {
 constexpr const char* kFooter =
     "\n`dapple SCENE` is short for `dapple render SCENE`.\n"
     "Exit codes: 0 success, 1 failure (one line on the error stream says what), 2 wrong usage,\n"
-    "128 + N where signal N ended a render early; its picture is written.";
+    "128 + N where signal N ended a render early; its picture and its checkpoint are written.";
 
 /// The arguments, without the program's name, with "render" put in front where no subcommand is named.
 std::vector<std::string> Arguments(CLI::App& program, int argc, char** argv) {
@@ -63,13 +66,22 @@ int Run(int argc, char** argv) {
   return action();
 }
 
+/// What was printed may have gone nowhere: a full disk, a pipe that nobody reads.
+int CheckPrinted(int exitCode) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exitCode;
+  Tell(fmt::format("error: cannot write to the standard output: {}", std::strerror(errno)));
+  return exitCode == kExitSuccess ? kExitFailure : exitCode;
+}
+
 }  // namespace
 
 }  // namespace dapple
 
 int main(int argc, char** argv) {
+  // A broken pipe and a limit on the size of files are errors of the write, not the end of the program.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   try {
-    return dapple::Run(argc, argv);
+    return dapple::CheckPrinted(dapple::Run(argc, argv));
   } catch (const dapple::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
   } catch (const std::bad_alloc&) {

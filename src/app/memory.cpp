@@ -1,6 +1,9 @@
 #include "src/app/memory.h"
 
+#include <fstream>
+
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace dapple {
 
@@ -8,6 +11,13 @@ int64_t PeakMemoryBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB
+}
+
+int64_t CurrentMemoryBytes() {
+  std::ifstream pages("/proc/self/statm");
+  int64_t all = 0, resident = 0;
+  pages >> all >> resident;
+  return resident * sysconf(_SC_PAGESIZE);
 }
 
 }  // namespace dapple

@@ -8,4 +8,7 @@ namespace dapple {
 /// The most that was resident at one time so far, in bytes.
 int64_t PeakMemoryBytes();
 
+/// What of it is held now; 0 where the system does not tell.
+int64_t CurrentMemoryBytes();
+
 }  // namespace dapple

@@ -62,7 +62,7 @@ void ProgressDisplay::ShowBar(const RenderProgress& progress) {
   const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
   std::string line = fmt::format("[{:=<{}}{:{}}] {}", "", filled, "", kBarWidth - filled, Describe(progress));
   line.resize(std::min(line.size(), static_cast<size_t>(TerminalWidth() - 1)));
-  fmt::print(stderr, "\r{}\x1b[K", line);
+  std::fputs(fmt::format("\r{}\x1b[K", line).c_str(), stderr);
   std::fflush(stderr);
 }
 
@@ -71,7 +71,7 @@ void ProgressDisplay::ShowLine(const RenderProgress& progress) {
   // The first pass always has its line: it tells how fast the rest will go.
   if (tenths <= tenthsShown_ && progress.passesDone != 1) return;
   tenthsShown_ = tenths;
-  fmt::print(stderr, "{:3} %: {}\n", tenths * 10, Describe(progress));
+  Tell(fmt::format("{:3} %: {}", tenths * 10, Describe(progress)));
 }
 
 }  // namespace dapple

@@ -1,6 +1,8 @@
 // `dapple render`: reads a scene, renders it within a budget, writes the picture.
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,7 +20,10 @@
 #include "src/app/signals.h"
 #include "src/base/parallel.h"
 #include "src/image/atomic_file.h"
+#include "src/render/checkpoint.h"
 #include "src/render/driver.h"
+#include "src/render/memory_needs.h"
+#include "src/render/snapshots.h"
 #include "src/render/statistics.h"
 
 namespace dapple {
@@ -28,6 +33,11 @@ namespace {
 struct RenderOptions : SceneOptions {
   std::vector<std::string> outputs;
   std::string statistics;
+  AovSet aovs;
+  std::optional<double> checkpointSeconds;
+  bool resumes = false;
+  std::optional<SnapshotSchedule> snapshots;
+  std::optional<int64_t> memoryLimit;  ///< bytes
   bool isQuiet = false;
   bool recordsSeconds = false;
 };
@@ -47,8 +57,8 @@ std::string Rate(int64_t count, double seconds) {
 
 void PrintStart(const RenderOptions& options, const Scene& scene, const RenderPlan& plan) {
   const Vec2i& resolution = scene.Settings().resolution;
-  fmt::print(stderr, "{}: {} x {}, {} ({}), {}\n", options.scene, resolution.x, resolution.y, plan.choice.name,
-             plan.choice.reason, FormatNumberOf(ThreadCount(), "thread", "threads"));
+  Tell(fmt::format("{}: {} x {}, {} ({}), {}", options.scene, resolution.x, resolution.y, plan.choice.name,
+                   plan.choice.reason, FormatNumberOf(ThreadCount(), "thread", "threads")));
 }
 
 void PrintNeeds(const RenderNeeds& needs, const PassStats& stats) {
@@ -88,47 +98,154 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
 /// A picture of fewer samples than were paid for must not go unnoticed, however quiet the render.
 void WarnOfNonFinite(const Film& film) {
   if (film.NonFiniteCount() == 0) return;
-  fmt::print(stderr, "warning: {} left out: infinite, not a number, or too large\n",
-             FormatNumberOf(film.NonFiniteCount(), "sample was", "samples were"));
+  Tell(fmt::format("warning: {} left out: infinite, not a number, or too large",
+                   FormatNumberOf(film.NonFiniteCount(), "sample was", "samples were")));
 }
 
-RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded, const RenderPlan& plan) {
-  const RenderSettings& settings = loaded.scene->Settings();
+RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded, const RenderPlan& plan,
+                        const Film& film) {
   RenderOrigin origin;
-  origin.identity = MakeIdentity(loaded.contentHash, settings, plan.choice.name, plan.options, plan.seed);
+  origin.identity = MakeIdentity(loaded.contentHash, film, options.aovs, plan.choice.name, plan.options, plan.seed);
   origin.record.scene = std::filesystem::path(options.scene).filename().string();
   origin.record.integrator = plan.choice.name;
   origin.record.seed = plan.seed;
-  origin.exposure = settings.exposure;
+  origin.record.clamp = film.Clamp();
+  origin.exposure = loaded.scene->Settings().exposure;
+  origin.aovs = options.aovs;
   return origin;
 }
 
-RenderRecord MakeRecord(const RenderOptions& options, const RenderPlan& plan, const RenderOrigin& origin,
-                        const RenderResult& result, const Film& film) {
+Film EmptyFilm(const RenderOptions& options, const RenderSettings& settings) {
+  Film film(settings.resolution, settings.crop, settings.filter);
+  if (options.clamp) film.ClampTo(*options.clamp);
+  if (const auto channels = FilmChannels(options.aovs); !channels.empty()) film.AddExtraChannels(channels);
+  return film;
+}
+
+void CheckMemory(const RenderOptions& options, const Scene& scene, const RenderPlan& plan) {
+  if (!options.memoryLimit) return;
+  const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
+  const MemoryNeeds needs = EstimateMemory(scene, options.aovs, plan.choice.name, plan.options, seed);
+  RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs, scene, plan.options);
+}
+
+/// Puts into the film what was rendered before.
+void Resume(const RenderOptions& options, const RenderPlan& plan, Checkpoint& checkpoint, Film* film) {
+  std::optional<Film> saved = checkpoint.Load(plan.budget);
+  if (!options.isQuiet) {
+    Tell(saved ? fmt::format("{}: going on after {}", checkpoint.Path(),
+                             FormatNumberOf(saved->PassCount(), "pass", "passes"))
+               : fmt::format("{}: not there yet; beginning with the first pass", checkpoint.Path()));
+  }
+  if (saved) *film = std::move(*saved);
+}
+
+/// What is done between passes: progress is shown, the state saved, pictures taken on the way. Where one of these
+/// cannot be written there is a warning, and the render goes on.
+class BetweenPasses {
+ public:
+  BetweenPasses(const RenderOptions& options, const RenderOrigin& origin, Checkpoint& checkpoint)
+      : origin_(origin),
+        checkpoint_(checkpoint),
+        snapshots_(options.snapshots),
+        memoryLimit_(options.memoryLimit),
+        outputs_(options.outputs) {
+    std::erase_if(outputs_, IsStateName);
+    if (!options.isQuiet) display_.emplace();
+  }
+
+  void operator()(const RenderProgress& progress) {
+    if (display_) display_->Show(progress);
+    if (const std::optional<Error> error = checkpoint_.Update(progress))
+      Tell(fmt::format("warning: no checkpoint was written, the one before it stays: {}", error->what()));
+    if (snapshots_ && snapshots_->IsDue(progress)) TakeSnapshot(*progress.film);
+    if (memoryLimit_ && PeakMemoryBytes() > *memoryLimit_) WarnOfMemory();
+  }
+
+ private:
+  void WarnOfMemory() {
+    Tell(fmt::format("warning: {} of memory were in use, more than the limit that was set",
+                     FormatBytes(static_cast<double>(PeakMemoryBytes()))));
+    memoryLimit_.reset();
+  }
+
+  void TakeSnapshot(const Film& film) const {
+    RenderRecord record = origin_.record;
+    record.passes = static_cast<int>(film.PassCount());
+    std::vector<std::string> paths;
+    for (const std::string& output : outputs_) paths.push_back(SnapshotName(output, record.passes));
+    try {
+      WriteRenderOutputs(paths, origin_, record, film);
+    } catch (const Error& error) {
+      Tell(fmt::format("warning: a snapshot was not written: {}", error.what()));
+    }
+  }
+
+  const RenderOrigin& origin_;
+  Checkpoint& checkpoint_;
+  std::optional<SnapshotSchedule> snapshots_;
+  std::optional<int64_t> memoryLimit_;  ///< nothing once it was passed and told
+  std::vector<std::string> outputs_;
+  std::optional<ProgressDisplay> display_;
+};
+
+RenderResult RenderWithProgress(const RenderOptions& options, const Scene& scene, const RenderPlan& plan,
+                                const RenderOrigin& origin, const StopSignals& signals, Checkpoint& checkpoint,
+                                Film& film) {
+  BetweenPasses betweenPasses(options, origin, checkpoint);
+  const RenderHooks hooks{.onProgress = std::ref(betweenPasses), .stop = &signals.Flag()};
+  const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
+  return Render(scene, seed, *plan.integrator, film, plan.budget, hooks);
+}
+
+/// False, with a word, where it fails: then the picture can still be written.
+bool SaveCheckpoint(Checkpoint& checkpoint, const Film& film, double seconds) {
+  try {
+    checkpoint.Save(film, seconds);
+    return true;
+  } catch (const Error& error) {
+    Tell(error.what());
+    return false;
+  }
+}
+
+RenderRecord MakeRecord(const RenderOptions& options, const RenderOrigin& origin, double seconds, const Film& film) {
   RenderRecord record = origin.record;
   record.passes = static_cast<int>(film.PassCount());
-  if (plan.budget.seconds || options.recordsSeconds) record.seconds = result.seconds;
+  if (options.seconds || options.recordsSeconds) record.seconds = seconds;
   return record;
 }
 
-RenderResult RenderWithProgress(const Scene& scene, const RenderPlan& plan, const StopSignals& signals, bool isQuiet,
-                                Film& film) {
-  RenderHooks hooks;
-  hooks.stop = &signals.Flag();
-  std::optional<ProgressDisplay> display;
-  if (!isQuiet) {
-    display.emplace();
-    hooks.onProgress = [&](const RenderProgress& progress) { display->Show(progress); };
+/// Writes all that was asked for, and says how to go on where a signal ended the render; returns the exit code.
+int Finish(const RenderOptions& options, const RenderOrigin& origin, const RenderResult& result,
+           const RenderNeeds& needs, const Film& film, int signal, Checkpoint& checkpoint) {
+  if (film.PassCount() == 0) {
+    Tell("stopped before the first pass; no picture is written");
+    return 128 + signal;
   }
-  const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
-  return Render(scene, seed, *plan.integrator, film, plan.budget, hooks);
+  // The checkpoint first: what is in it can be rendered no faster a second time.
+  const bool savesState = options.checkpointSeconds || options.resumes || result.stopped;
+  const bool isSaved = !savesState || SaveCheckpoint(checkpoint, film, result.seconds);
+  const RenderRecord record = MakeRecord(options, origin, checkpoint.SecondsBefore() + result.seconds, film);
+  WriteRenderOutputs(options.outputs, origin, record, film);
+  if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
+  if (!options.statistics.empty())
+    WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film));
+  WarnOfNonFinite(film);
+  if (!options.isQuiet) PrintSummary(result, needs, film);
+  if (result.stopped && isSaved) {
+    Tell(fmt::format("stopped after {}; to go on, give the same command with --resume (it reads {})",
+                     FormatNumberOf(film.PassCount(), "pass", "passes"), checkpoint.Path()));
+  }
+  if (!isSaved) return kExitFailure;
+  return result.stopped ? 128 + signal : kExitSuccess;
 }
 
 int RunRender(RenderOptions options) {
   for (const std::string& output : options.outputs) CheckRenderOutput(output);
   if (!options.statistics.empty()) CheckFolder(options.statistics);
   const ThreadLimit threads(options.threads);
-  Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  Diagnostics diagnostics(Tell);
   const LoadedScene loaded = Load(options, diagnostics);
   const Scene& scene = *loaded.scene;
   if (options.outputs.empty()) {
@@ -139,24 +256,80 @@ int RunRender(RenderOptions options) {
   if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
   }
-  const RenderOrigin origin = MakeOrigin(options, loaded, plan);
+  CheckMemory(options, scene, plan);
+  Film film = EmptyFilm(options, scene.Settings());
+  const RenderOrigin origin = MakeOrigin(options, loaded, plan, film);
+  Checkpoint checkpoint(Checkpoint::PathFor(options.outputs[0]), origin, options.checkpointSeconds);
   const StopSignals signals;
   if (!options.isQuiet) PrintStart(options, scene, plan);
-  Film film(scene.Settings().resolution, scene.Settings().crop, scene.Settings().filter);
-  const RenderResult result = RenderWithProgress(scene, plan, signals, options.isQuiet, film);
-  if (film.PassCount() == 0) {
-    fmt::print(stderr, "stopped before the first pass; no picture is written\n");
-    return 128 + signals.Signal();
-  }
-  const RenderRecord record = MakeRecord(options, plan, origin, result, film);
-  WriteRenderOutputs(options.outputs, origin, record, film);
-  if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
+  if (options.resumes) Resume(options, plan, checkpoint, &film);
+  const RenderResult result = RenderWithProgress(options, scene, plan, origin, signals, checkpoint, film);
   const RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
-  if (!options.statistics.empty())
-    WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film));
-  WarnOfNonFinite(film);
-  if (!options.isQuiet) PrintSummary(result, needs, film);
-  return result.stopped ? 128 + signals.Signal() : kExitSuccess;
+  return Finish(options, origin, result, needs, film, signals.Signal(), checkpoint);
+}
+
+SnapshotSchedule ParseSnapshots(const std::string& text) {
+  if (text == "times") return SnapshotSchedule::AtTimes(1, 2);
+  int passes = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), passes);
+  if (status == std::errc() && end == text.data() + text.size() && passes >= 1)
+    return SnapshotSchedule::EveryPasses(passes);
+  throw CLI::ValidationError("--snapshots", fmt::format("expected a number of passes >= 1, or times, not '{}'", text));
+}
+
+/// "500M", "4G", in powers of 1000, to bytes.
+int64_t ParseMemory(const std::string& text) {
+  double number = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string unit(end, text.data() + text.size());
+  const double factor = unit.empty() ? 1 : unit == "k" ? 1e3 : unit == "M" ? 1e6 : unit == "G" ? 1e9 : 0;
+  if (status == std::errc() && number * factor >= 1 && number * factor < 1e18)
+    return static_cast<int64_t>(number * factor);
+  throw CLI::ValidationError("--memory", fmt::format("expected a number of bytes, as in 500M or 4G, not '{}'", text));
+}
+
+AovSet ParseAovOption(const std::string& text) {
+  const std::optional<AovSet> aovs = ParseAovs(text);
+  if (aovs && !text.empty()) return *aovs;
+  throw CLI::ValidationError("--aov",
+                             fmt::format("expected some of albedo,normal,depth,position,variance, not '{}'", text));
+}
+
+/// What a render leaves behind, beside the picture.
+void AddFilesGroup(CLI::App* command, RenderOptions* options) {
+  const std::string group = "Files";
+  command
+      ->add_option("--checkpoint", options->checkpointSeconds,
+                   "Save the state every so often, and in the end, beside the first output (OUTPUT.checkpoint)")
+      ->check(CheckPositive)
+      ->type_name("SECONDS")
+      ->group(group);
+  command
+      ->add_flag("--resume", options->resumes,
+                 "Go on from OUTPUT.checkpoint, which --checkpoint, Ctrl-C and SIGTERM write; the picture is that of a "
+                 "render without a break. Where there is none the render begins with its first pass")
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--snapshots", [options](const std::string& text) { options->snapshots = ParseSnapshots(text); },
+          "Write pictures on the way, as OUTPUT with the number of passes in its name: every N passes, or at times: "
+          "after 1, 2, 4, 8, ... seconds")
+      ->type_name("N|times")
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--aov", [options](const std::string& text) { options->aovs = ParseAovOption(text); },
+          "Layers of the EXR file beside the picture, some of albedo,normal,depth,position,variance")
+      ->type_name("NAMES")
+      ->group(group);
+  command->add_option("--stats", options->statistics, "Write what the render did (rays, photons, seconds) as JSON")
+      ->type_name("FILE.json")
+      ->group(group);
+  command
+      ->add_flag("--record-seconds", options->recordsSeconds,
+                 "Record in the file how long the render took, with --passes too; else the same seed and passes give "
+                 "the same file")
+      ->group(group);
 }
 
 }  // namespace
@@ -172,11 +345,13 @@ void AddRenderCommand(CLI::App& program, Action* action) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   options->AddTo(command);
-  command->add_option("--stats", options->statistics, "Write what the render did (rays, photons, seconds) as JSON")
-      ->type_name("FILE.json");
-  command->add_flag("--record-seconds", options->recordsSeconds,
-                    "Record in the file how long the render took, with --passes too; else the same seed and passes "
-                    "give the same file");
+  AddFilesGroup(command, options.get());
+  command
+      ->add_option_function<std::string>(
+          "--memory", [options = options.get()](const std::string& text) { options->memoryLimit = ParseMemory(text); },
+          "The memory that the render may take, as in 500M or 4G: where scene, film and photons need more, it does not "
+          "start, and says what takes how much")
+      ->type_name("LIMIT");
   command->add_flag("--quiet", options->isQuiet, "No progress and no summary; warnings and errors only");
   command->callback([options, action] { *action = [options] { return RunRender(*options); }; });
 }

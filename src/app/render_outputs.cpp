@@ -15,7 +15,7 @@ void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigi
       WriteState(path, origin, film);
       continue;
     }
-    if (!picture) picture = ToPicture(film, origin.exposure);
+    if (!picture) picture = ToPicture(film, origin.exposure, origin.aovs);
     WriteOutput(path, *picture, ToMetadata(record));
   }
 }

@@ -4,6 +4,11 @@
 #include <cassert>
 #include <chrono>
 #include <limits>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "src/render/aov.h"
 
 namespace dapple {
 
@@ -42,6 +47,16 @@ class PassClock {
 int NextPass(const RenderBudget& budget, const Film& film) {
   const PassRange andOn{budget.firstPass, std::numeric_limits<int>::max()};
   return static_cast<int>(film.Passes().FirstMissing(andOn)->begin);
+}
+
+/// Runs `work`; memory that does not suffice becomes an `Error` that says for what.
+template <typename F>
+void WithinMemory(const std::string& what, F work) {
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("the memory does not suffice for {}; fewer photons or a smaller picture take less", what));
+  }
 }
 
 bool IsStopAsked(const RenderHooks& hooks) { return hooks.stop && hooks.stop->load(std::memory_order_relaxed); }
@@ -83,7 +98,7 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
     if (hooks.onProgress) hooks.onProgress(Measure(budget, film, watch.Seconds(), clock, result.stats));
   };
 
-  integrator.Prepare(scene, seed);
+  WithinMemory("the preparation", [&] { integrator.Prepare(scene, seed); });
   result.prepareSeconds = watch.Seconds();
   report();
   while (true) {
@@ -94,7 +109,11 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
       result.stopped = true;
       break;
     }
-    result.stats += integrator.RenderPass(NextPass(budget, film), film);
+    const int pass = NextPass(budget, film);
+    WithinMemory(fmt::format("pass {}", pass), [&] {
+      if (!film.ExtraChannels().empty()) result.stats += RecordFirstHits(scene, seed, pass, film);
+      result.stats += integrator.RenderPass(pass, film);
+    });
     assert(film.PassCount() == passesBefore + 1);
     ++result.passes;
     clock.Add(watch.Seconds() - begin);

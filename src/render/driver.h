@@ -60,8 +60,8 @@ struct RenderResult {
 
 /// Prepares the integrator and adds to the film the passes of the budget that it does not hold yet, in rising order. A
 /// film that already holds passes must come from the same scene, seed and integrator, and its passes must be of the
-/// budget, which counts them too. Passes run one after another, each parallel in itself. Errors of the integrator are
-/// passed on.
+/// budget, which counts them too. Extra channels of the film are those that `FilmChannels` (aov.h) names. Passes run
+/// one after another, each parallel in itself. Errors of the integrator are passed on.
 RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, Film& film, const RenderBudget& budget,
                     const RenderHooks& hooks = {});
 

@@ -33,13 +33,8 @@ ImageMetadata ToMetadata(const RenderRecord& record) {
       {"passes", record.passes}, {"version", record.version},       {"instructionSet", record.instructionSet},
   };
   if (record.seconds) metadata["seconds"] = *record.seconds;
+  if (record.clamp) metadata["clamp"] = double{*record.clamp};
   return metadata;
-}
-
-Image ToPicture(const Film& film, float exposure) {
-  Image picture = film.ToImage();
-  for (float& value : picture.Values()) value *= exposure;
-  return picture;
 }
 
 void CheckOutput(const std::string& path) {

@@ -2,13 +2,12 @@
 // pixels.
 //
 //   CheckOutput(path);                                   // before hours of work
-//   WriteOutput(path, ToPicture(film, scene.Settings().exposure), ToMetadata(record));
+//   WriteOutput(path, ToPicture(film, exposure), ToMetadata(record));
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "src/image/film.h"
 #include "src/image/image.h"
 #include "src/image/image_io.h"
 #include "src/render/version.h"
@@ -24,15 +23,13 @@ struct RenderRecord {
   int seed = 0;
   int passes = 0;
   std::optional<double> seconds;  ///< of the render
+  std::optional<float> clamp;     ///< `Film::Clamp`
   std::string version = Version();
   std::string instructionSet = InstructionSet();
 };
 
 /// The record under the names of its members.
 ImageMetadata ToMetadata(const RenderRecord& record);
-
-/// The mean of the film's passes, times the exposure (of `RenderSettings`).
-Image ToPicture(const Film& film, float exposure);
 
 /// Throws `Error` where no file can be written to `path`: its folder is missing or not writable, or it is a folder
 /// itself.

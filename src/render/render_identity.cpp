@@ -26,13 +26,16 @@ std::string RenderIdentity::ValueOf(const std::string& name) const {
   return "";
 }
 
-RenderIdentity MakeIdentity(const std::string& sceneHash, const RenderSettings& settings, const std::string& integrator,
-                            const IntegratorOptions& options, int seed) {
-  const PixelBounds& crop = settings.crop;
+RenderIdentity MakeIdentity(const std::string& sceneHash, const Film& film, const AovSet& aovs,
+                            const std::string& integrator, const IntegratorOptions& options, int seed) {
+  const Vec2i& resolution = film.FullResolution();
+  const PixelBounds& crop = film.Crop();
   RenderIdentity identity{{
       {"scene", sceneHash},
-      {"resolution", fmt::format("{}x{}", settings.resolution.x, settings.resolution.y)},
+      {"resolution", fmt::format("{}x{}", resolution.x, resolution.y)},
       {"crop", fmt::format("{},{},{},{}", crop.min.x, crop.max.x, crop.min.y, crop.max.y)},
+      {"clamp", film.Clamp() ? fmt::format("{}", *film.Clamp()) : "none"},
+      {"aov", ToString(aovs)},
       {"integrator", integrator},
       {"seed", fmt::format("{}", seed)},
   }};

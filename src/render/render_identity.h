@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "integrators/integrator.h"
-#include "src/scene/render_settings.h"
+#include "src/image/film.h"
+#include "src/render/aov.h"
 
 namespace dapple {
 
@@ -18,9 +19,10 @@ struct RenderIdentity {
   std::string ValueOf(const std::string& name) const;
 };
 
-/// The identity of a render by this program on this processor. `sceneHash` as `HashSceneContent` gives it.
-RenderIdentity MakeIdentity(const std::string& sceneHash, const RenderSettings& settings, const std::string& integrator,
-                            const IntegratorOptions& options, int seed);
+/// The identity of a render by this program on this processor. `sceneHash` as `HashSceneContent` gives it; of the film
+/// counts what it is, not what it holds.
+RenderIdentity MakeIdentity(const std::string& sceneHash, const Film& film, const AovSet& aovs,
+                            const std::string& integrator, const IntegratorOptions& options, int seed);
 
 /// What of `other` is not as in `expected`, for people: "seed 8, not 7; the scene's content"; empty where the passes of
 /// both are of one picture. Between portable builds it does not matter which build and which processor.

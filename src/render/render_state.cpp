@@ -27,10 +27,12 @@ std::string OriginToJson(const RenderOrigin& origin) {
       {"version", record.version},
       {"instructionSet", record.instructionSet},
       {"exposure", origin.exposure},
+      {"aovs", ToString(origin.aovs)},
       {"identity", nlohmann::ordered_json::object()},
   };
   for (const auto& [name, value] : origin.identity.fields) json["identity"][name] = value;
   if (record.seconds) json["seconds"] = *record.seconds;
+  if (record.clamp) json["clamp"] = *record.clamp;
   // Names of files may hold any bytes.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
@@ -44,6 +46,10 @@ RenderOrigin OriginFromJson(std::string_view text) {
   origin.record.version = json.at("version").get<std::string>();
   origin.record.instructionSet = json.at("instructionSet").get<std::string>();
   origin.exposure = json.at("exposure").get<float>();
+  const auto aovs = ParseAovs(json.at("aovs").get<std::string>());
+  if (!aovs) throw Error("not the state of a render: unknown layers");
+  origin.aovs = *aovs;
+  if (json.contains("clamp")) origin.record.clamp = json.at("clamp").get<float>();
   if (json.contains("seconds")) origin.record.seconds = json.at("seconds").get<double>();
   for (const auto& [name, value] : json.at("identity").items())
     origin.identity.fields.emplace_back(name, value.get<std::string>());
@@ -121,6 +127,7 @@ void RequireAllPasses(const Film& film, std::optional<int> passes) {
 RenderRecord RecordOf(const RenderState& state) {
   RenderRecord record = state.origin.record;
   record.passes = static_cast<int>(state.film.PassCount());
+  record.seconds.reset();
   return record;
 }
 

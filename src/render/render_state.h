@@ -4,13 +4,14 @@
 //   RenderState state = ReadState("a.dapple");
 //   JoinState(ReadState("b.dapple"), "b.dapple", &state);
 //   RequireAllPasses(state.film, std::nullopt);
-//   WriteOutput("picture.exr", ToPicture(state.film, state.origin.exposure), ToMetadata(RecordOf(state)));
+//   WriteOutput("picture.exr", ToPicture(state.film, origin.exposure, origin.aovs), ToMetadata(RecordOf(state)));
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "src/image/film.h"
+#include "src/render/aov.h"
 #include "src/render/output.h"
 #include "src/render/render_identity.h"
 
@@ -21,6 +22,7 @@ struct RenderOrigin {
   RenderIdentity identity;
   RenderRecord record;  ///< `passes` does not count here: the film has them
   float exposure = 1;
+  AovSet aovs;
 };
 
 struct RenderState {
@@ -45,7 +47,7 @@ void JoinState(const RenderState& part, const std::string& path, RenderState* wh
 /// the ranges that are missing or too many.
 void RequireAllPasses(const Film& film, std::optional<int> passes);
 
-/// What is recorded in the picture of this state.
+/// What is recorded in the picture of this state: nothing of how long it took.
 RenderRecord RecordOf(const RenderState& state);
 
 }  // namespace dapple

@@ -27,6 +27,15 @@ constexpr std::string_view kVectors =
 
 constexpr std::string_view kPortable = "portable";
 
+std::string HashOfOwnFile() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (bytes.empty()) throw Error("cannot read the program's own file, /proc/self/exe, to tell which build it is");
+  ContentHash hash;
+  hash.AddText(bytes);
+  return hash.Hex();
+}
+
 }  // namespace
 
 std::string Version() { return DAPPLE_VERSION; }
@@ -40,12 +49,8 @@ std::string InstructionSet() {
 bool IsPortable(const std::string& instructionSet) { return instructionSet.starts_with(kPortable); }
 
 std::string BuildId() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (bytes.empty()) throw Error("cannot read the program's own file, /proc/self/exe, to tell which build it is");
-  ContentHash hash;
-  hash.AddText(bytes);
-  return hash.Hex();
+  static const std::string id = HashOfOwnFile();
+  return id;
 }
 
 std::string ProcessorName() {

@@ -18,7 +18,8 @@ class MergeByIntegrator : public ProgramTest, public testing::WithParamInterface
 
 TEST_P(MergeByIntegrator, RangesOfPassesJoinToTheFileOfOneRender) {
   WriteScene("tiny.pbrt");
-  const std::string common = "tiny.pbrt --quiet --photons 2000 --integrator " + std::string(GetParam());
+  const std::string common =
+      "tiny.pbrt --quiet --photons 2000 --no-guide --radius 0.2 --integrator " + std::string(GetParam());
   ASSERT_EQ(Run(common + " --passes 7 -o whole.exr").exitCode, 0);
   for (const char* range : {"0:3", "3:4", "4:7"}) {
     const ProgramResult result = Run(common + " --threads 3 --passes " + range);

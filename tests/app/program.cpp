@@ -1,7 +1,7 @@
 #include "tests/app/program.h"
 
+#include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <thread>
@@ -25,6 +25,32 @@ Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
 Shape "bilinearmesh" "point3 P" [-5 -1 -5  5 -1 -5  -5 -1 5  5 -1 5]
 Material "dielectric"
 Shape "sphere" "float radius" [1]
+)";
+
+// A pass has several chunks of light paths (4096) and buckets of photons (2048). Of the two floors, which are one in
+// place, no ray may see one today and the other tomorrow.
+constexpr const char* kSharedWork = R"(LookAt 0 2 -6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [64] "integer yresolution" [48] "string filename" ["shared.exr"]
+WorldBegin
+LightSource "point" "rgb I" [30 30 30] "point3 from" [1 4 -1]
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [8 6 4]
+  Shape "trianglemesh" "point3 P" [-2 4 0  -1 4 0  -1 4 1  -2 4 1] "integer indices" [0 1 2  0 2 3]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
+Shape "trianglemesh" "point3 P" [-5 -1 -7  5 -1 -7  -5 5 -7  5 5 -7  -5 -1 5  5 -1 5  -5 5 5  5 5 5] "integer indices"
+  [0 1 4 1 5 4  2 6 3 3 6 7  4 5 6 5 7 6  0 2 1 1 2 3  0 4 2 2 4 6  1 3 5 3 7 5]
+Material "diffuse" "rgb reflectance" [0.1 0.2 0.7]
+Shape "trianglemesh" "point3 P" [-5 -1 -7  5 -1 -7  -5 -1 5  5 -1 5] "integer indices" [0 1 2 1 3 2]
+ObjectBegin "tent"
+  Shape "trianglemesh" "point3 P" [-0.5 -1 -0.5  0.5 -1 -0.5  0 0.5 0  0 -1 0.5] "integer indices" [0 2 1  1 2 3  3 2 0]
+ObjectEnd
+AttributeBegin Translate -1.5 0 0 ObjectInstance "tent" AttributeEnd
+AttributeBegin Translate 1.5 0 1 Rotate 30 0 1 0 ObjectInstance "tent" AttributeEnd
+AttributeBegin Translate 1.5 0 1 Rotate 30 0 1 0 ObjectInstance "tent" AttributeEnd
+Material "dielectric"
+Shape "sphere" "float radius" 0.8
 )";
 
 }  // namespace
@@ -63,17 +89,27 @@ ProgramResult ProgramTest::Collect(int status) const {
   return result;
 }
 
+int ProgramTest::Start(const std::string& arguments, const std::function<void()>& prepare) const {
+  const std::string command = Command(arguments);
+  const pid_t child = fork();
+  if (child != 0) return child;
+  prepare();
+  execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+  _exit(127);
+}
+
 ProgramResult ProgramTest::Run(const std::string& arguments) const {
-  return Collect(std::system(Command(arguments).c_str()));
+  return Run(arguments, [] {});
+}
+
+ProgramResult ProgramTest::Run(const std::string& arguments, const std::function<void()>& prepare) const {
+  int status = 0;
+  waitpid(Start(arguments, prepare), &status, 0);
+  return Collect(status);
 }
 
 ProgramResult ProgramTest::RunAndSignal(const std::string& arguments, int signal, const std::string& awaited) const {
-  const std::string command = Command(arguments);
-  const pid_t child = fork();
-  if (child == 0) {
-    execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-    _exit(127);
-  }
+  const pid_t child = Start(arguments, [] {});
   const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   int status = 0;
   while (Read("stderr.txt").find(awaited) == std::string::npos && std::chrono::steady_clock::now() < giveUp) {
@@ -83,6 +119,15 @@ ProgramResult ProgramTest::RunAndSignal(const std::string& arguments, int signal
   kill(child, signal);
   waitpid(child, &status, 0);
   return Collect(status);
+}
+
+bool ProgramTest::RunAndKill(const std::string& arguments, double seconds) const {
+  const pid_t child = Start(arguments, [] {});
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status);
 }
 
 void ProgramTest::Write(const std::string& name, const std::string& content) const {
@@ -95,5 +140,17 @@ std::string ProgramTest::Read(const std::string& name) const {
 }
 
 void ProgramTest::WriteScene(const std::string& name) const { Write(name, kScene); }
+
+void ProgramTest::WriteSceneOfSharedWork(const std::string& name) const { Write(name, kSharedWork); }
+
+std::vector<std::string> ProgramTest::Files() const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "stdout.txt" && name != "stderr.txt") names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
+}
 
 }  // namespace dapple

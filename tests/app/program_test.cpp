@@ -67,6 +67,20 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
         "render tiny.pbrt extra",
         "tiny.pbrt --passes 0",
         "tiny.pbrt --passes x",
+        "tiny.pbrt --passes 3:3",
+        "tiny.pbrt --passes 4:3",
+        "tiny.pbrt --passes -1:3",
+        "tiny.pbrt --passes 1:2:3",
+        "tiny.pbrt --checkpoint 0",
+        "tiny.pbrt --checkpoint",
+        "tiny.pbrt --snapshots 0",
+        "tiny.pbrt --snapshots often",
+        "tiny.pbrt --aov color",
+        "tiny.pbrt --clamp 0",
+        "tiny.pbrt --memory 0",
+        "tiny.pbrt --memory much",
+        "merge a.dapple",
+        "merge -o a.exr",
         "tiny.pbrt --passes 2 --time 3",
         "tiny.pbrt --time 0",
         "tiny.pbrt --time -1",
@@ -210,50 +224,6 @@ TEST_F(Program, ACropHasThePixelsOfTheWholePicture) {
       EXPECT_EQ(part.ColorAt(x, y), whole.ColorAt(x + part.origin.x, y + part.origin.y)) << x << ' ' << y;
 }
 
-// Enough of everything that threads share the work of: tiles of pixels, chunks of light paths (4096), buckets of
-// photons (8192); light through glass, off a mesh, off instances.
-constexpr const char* kSharedWork = R"(LookAt 0 2 -6  0 0.5 0  0 1 0
-Camera "perspective" "float fov" [40]
-Film "rgb" "integer xresolution" [128] "integer yresolution" [96]
-WorldBegin
-LightSource "point" "rgb I" [30 30 30] "point3 from" [1 4 -1]
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [8 6 4]
-  Shape "trianglemesh" "point3 P" [-2 4 0  -1 4 0  -1 4 1  -2 4 1] "integer indices" [0 1 2  0 2 3]
-AttributeEnd
-Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
-Shape "trianglemesh" "point3 P" [-5 -1 -7  5 -1 -7  -5 5 -7  5 5 -7  -5 -1 5  5 -1 5  -5 5 5  5 5 5] "integer indices"
-  [0 1 4 1 5 4  2 6 3 3 6 7  4 5 6 5 7 6  0 2 1 1 2 3  0 4 2 2 4 6  1 3 5 3 7 5]
-ObjectBegin "tent"
-  Shape "trianglemesh" "point3 P" [-0.5 -1 -0.5  0.5 -1 -0.5  0 0.5 0  0 -1 0.5] "integer indices" [0 2 1  1 2 3  3 2 0]
-ObjectEnd
-AttributeBegin Translate -1.5 0 0 ObjectInstance "tent" AttributeEnd
-AttributeBegin Translate 1.5 0 1 Rotate 30 0 1 0 ObjectInstance "tent" AttributeEnd
-Material "dielectric"
-Shape "sphere" "float radius" 0.8
-)";
-
-class ProgramByIntegrator : public ProgramTest, public testing::WithParamInterface<const char*> {};
-
-TEST_P(ProgramByIntegrator, TheSameSeedGivesTheSameFileWithAnyNumberOfThreads) {
-  Write("shared.pbrt", kSharedWork);
-  const std::string common = std::string("shared.pbrt --quiet --passes 2 --photons 10000 --integrator ") + GetParam();
-  for (const char* threads : {"1", "2", "3", "16"}) {
-    const ProgramResult result = Run(common + " -o t" + threads + ".exr --threads " + threads);
-    ASSERT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(result.err, "");
-    ASSERT_TRUE(Exists(std::string("t") + threads + ".exr"));
-    EXPECT_TRUE(Read("t1.exr") == Read(std::string("t") + threads + ".exr")) << threads << " threads";
-  }
-  ASSERT_EQ(Run(common + " -o other.exr --seed 1").exitCode, 0);
-  EXPECT_FALSE(std::ranges::equal(ReadImage(Path("other.exr")).Values(), ReadImage(Path("t1.exr")).Values()))
-      << "another seed, another noise";
-}
-
-INSTANTIATE_TEST_SUITE_P(All, ProgramByIntegrator,
-                         testing::Values("path", "light_tracing", "photon_mapping", "sppm", "hybrid"),
-                         [](const auto& instance) { return std::string(instance.param); });
-
 TEST_F(Program, ATimeBudgetIsKeptAndRecorded) {
   WriteScene("tiny.pbrt");
   const ProgramResult result = Run("tiny.pbrt -o a.exr --time 0.2");
@@ -280,6 +250,8 @@ TEST_F(Program, ASignalEndsTheRenderAndThePictureIsWritten) {
     EXPECT_EQ(result.exitCode, 128 + signal) << result.err;
     ASSERT_TRUE(Exists("a.exr")) << result.err;
     EXPECT_GE(std::get<int>(ReadExrMetadata(Path("a.exr")).at("passes")), 1);
+    EXPECT_TRUE(Contains(result.err, "to go on, give the same command with --resume (it reads a.exr.checkpoint)\n"));
+    EXPECT_TRUE(Exists("a.exr.checkpoint"));
     std::filesystem::remove(Path("a.exr"));
   }
 }

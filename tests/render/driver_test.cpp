@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -260,6 +261,22 @@ TEST(Driver, ForeseesTheTimeLeftFromTheMeanOfThePasses) {
               },
           .stop = nullptr});
   EXPECT_EQ(checked, kPasses);
+}
+
+TEST(Driver, SaysForWhatTheMemoryDidNotSuffice) {
+  const Scene scene = EmptyScene();
+  FakeIntegrator integrator;
+  integrator.duringPass = [](int pass) {
+    if (pass == 1) throw std::bad_alloc();
+  };
+  Film film = SmallFilm();
+  try {
+    Render(scene, 0, integrator, film, {.passes = 3, .seconds = {}});
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("the memory does not suffice for pass 1;"), std::string::npos);
+  }
+  EXPECT_EQ(film.PassCount(), 1);
 }
 
 TEST(Driver, PassesErrorsOn) {

@@ -1,0 +1,64 @@
+#include "src/render/checkpoint.h"
+
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "src/image/atomic_file.h"
+
+namespace dapple {
+
+namespace {
+
+/// All passes that a budget may lead to.
+PassRange PassesOf(const RenderBudget& budget) {
+  const int64_t first = budget.firstPass;
+  return {first, budget.passes ? first + *budget.passes : std::numeric_limits<int64_t>::max()};
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(std::string path, RenderOrigin origin, std::optional<double> interval)
+    : path_(std::move(path)), origin_(std::move(origin)), interval_(interval) {}
+
+std::optional<Film> Checkpoint::Load(const RenderBudget& budget) {
+  RemoveStaleTemporaries(path_);
+  std::error_code failure;
+  if (!std::filesystem::exists(path_, failure)) return std::nullopt;
+  RenderState state = ReadState(path_);
+  if (const std::string what = Differences(state.origin.identity, origin_.identity); !what.empty()) {
+    throw Error(FileLocation(path_),
+                fmt::format("it is of another render: {}; remove it, or render without --resume", what));
+  }
+  const std::vector<PassRange>& held = state.film.Passes().All();
+  const PassRange asked = PassesOf(budget);
+  if (!held.empty() && (held.front().begin < asked.begin || held.back().end > asked.end)) {
+    throw Error(FileLocation(path_), fmt::format("it holds passes {}, more than the {} to {} that are asked for",
+                                                 state.film.Passes().ToString(), asked.begin, asked.end - 1));
+  }
+  secondsBefore_ = state.origin.record.seconds.value_or(0);
+  passesSaved_ = state.film.PassCount();
+  return std::move(state.film);
+}
+
+std::optional<Error> Checkpoint::Update(const RenderProgress& progress) {
+  if (!interval_ || progress.seconds - lastSave_ < *interval_ || progress.film->PassCount() == passesSaved_)
+    return std::nullopt;
+  lastSave_ = progress.seconds;
+  try {
+    Save(*progress.film, progress.seconds);
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+void Checkpoint::Save(const Film& film, double seconds) {
+  origin_.record.seconds = secondsBefore_ + seconds;
+  WriteState(path_, origin_, film);
+  passesSaved_ = film.PassCount();
+}
+
+}  // namespace dapple

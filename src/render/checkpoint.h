@@ -1,0 +1,51 @@
+// The state of a render kept beside its output, so that a render that was ended, by whatever, goes on where it was.
+//
+//   Checkpoint checkpoint(Checkpoint::PathFor("picture.exr"), origin, 60);
+//   if (std::optional<Film> saved = checkpoint.Load(budget)) film = std::move(*saved);
+//   hooks.onProgress = [&](const RenderProgress& progress) { checkpoint.Update(progress); };
+//   Render(...);
+//   checkpoint.Save(film, result.seconds);
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "src/render/driver.h"
+#include "src/render/render_state.h"
+
+namespace dapple {
+
+class Checkpoint {
+ public:
+  /// "picture.exr" has "picture.exr.checkpoint".
+  static std::string PathFor(const std::string& output) { return output + ".checkpoint"; }
+
+  /// `interval`: seconds between two saves by `Update`; absent: it never saves. Touches no file.
+  Checkpoint(std::string path, RenderOrigin origin, std::optional<double> interval);
+
+  /// The film that was saved; nothing where there is no file. Throws `Error` where it is damaged, is of another render
+  /// (saying what differs), or holds passes that are not of the budget. Clears away what a killed render left half
+  /// written.
+  std::optional<Film> Load(const RenderBudget& budget);
+
+  /// Saves where the interval has passed since the last save (or the beginning) and a pass was done since. Where that
+  /// fails the render goes on and the file of before stays: the error is returned, for a warning.
+  std::optional<Error> Update(const RenderProgress& progress);
+
+  /// Saves. `seconds`: those of this render so far. Throws `Error`; the file of before then stays.
+  void Save(const Film& film, double seconds);
+
+  const std::string& Path() const { return path_; }
+  /// Seconds of the renders before this one that led to the film of `Load`.
+  double SecondsBefore() const { return secondsBefore_; }
+
+ private:
+  std::string path_;
+  RenderOrigin origin_;
+  std::optional<double> interval_;
+  double secondsBefore_ = 0;
+  double lastSave_ = 0;
+  int64_t passesSaved_ = 0;
+};
+
+}  // namespace dapple

@@ -1,0 +1,84 @@
+#include "src/render/memory_needs.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "integrators/photon_shooting.h"
+#include "src/base/error.h"
+#include "src/photons/light_path.h"
+
+namespace dapple {
+
+namespace {
+
+/// A photon (position and payload) stands in its chunk, whose arrays may be half empty while they grow, and in the map.
+constexpr int64_t kBytesPerPhoton = 3 * (12 + 32);
+/// Photons of pilots are of fixed number; measured.
+constexpr int64_t kPilotBytes = 24'000'000;
+/// An image, what it is made from, and its file before and after compression.
+constexpr int64_t kCopiesOfPicture = 4;
+
+bool StoresPhotons(std::string_view integrator) { return integrator != "path" && integrator != "light_tracing"; }
+
+/// The mean over the light paths that leave any: emission may be guided to these.
+double PhotonsOfAPath(const Scene& scene, int maxDepth, uint64_t seed) {
+  struct Chunk {
+    int64_t photons = 0, paths = 0;
+  };
+  constexpr int64_t kPaths = 4096;
+  const EmissionSampler emission(scene);
+  const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(
+      emission, seed, 0, kPaths, [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
+        int64_t photons = 0;
+        TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& vertex) {
+          photons += vertex.scattered > 0 && !vertex.bsdf.IsPurelySpecular() ? 1 : 0;
+        });
+        chunk.photons += photons;
+        chunk.paths += photons > 0 ? 1 : 0;
+      });
+  Chunk sum;
+  for (const Chunk& chunk : chunks) sum.photons += chunk.photons, sum.paths += chunk.paths;
+  return sum.paths > 0 ? static_cast<double>(sum.photons) / static_cast<double>(sum.paths) : 0;
+}
+
+std::string Megabytes(int64_t bytes) { return fmt::format("{} MB", (bytes + 999'999) / 1'000'000); }
+
+}  // namespace
+
+MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
+                           const IntegratorOptions& options, uint64_t seed) {
+  MemoryNeeds needs;
+  const int64_t pixels = scene.Settings().crop.Area();
+  const auto extras = static_cast<int64_t>(FilmChannels(aovs).size());
+  const int64_t channels = extras + Color::kComponents * (aovs.variance ? 2 : 1);
+  needs.film = pixels * static_cast<int64_t>(sizeof(FixedPoint)) * (2 * Color::kComponents + extras);
+  needs.files = std::max(needs.film, pixels * channels * static_cast<int64_t>(sizeof(float)) * kCopiesOfPicture);
+  if (StoresPhotons(integrator)) {
+    const double perPath = PhotonsOfAPath(scene, options.maxDepth, seed);
+    needs.photons = static_cast<int64_t>(static_cast<double>(LightPathsOfPass(scene, options)) * perPath *
+                                         static_cast<double>(kBytesPerPhoton));
+    needs.pilots = kPilotBytes;
+  }
+  return needs;
+}
+
+void RequireMemory(int64_t limit, int64_t inUse, const MemoryNeeds& needs, const Scene& scene,
+                   const IntegratorOptions& options) {
+  const int64_t sum = inUse + needs.Sum();
+  if (sum <= limit) return;
+  std::string text =
+      fmt::format("the render takes about {}, more than {}: the scene {}, the film {}, writing files {}",
+                  Megabytes(sum), Megabytes(limit), Megabytes(inUse), Megabytes(needs.film), Megabytes(needs.files));
+  if (needs.photons > 0) {
+    const int64_t paths = LightPathsOfPass(scene, options), left = limit - (sum - needs.photons);
+    text += fmt::format(", pilots {}, photons of {} light paths a pass {}", Megabytes(needs.pilots), paths,
+                        Megabytes(needs.photons));
+    const double share = static_cast<double>(left) / static_cast<double>(needs.photons);
+    const auto fitting = static_cast<int64_t>(share * static_cast<double>(paths));
+    if (fitting >= 1) text += fmt::format("; --photons {} fits", fitting);
+  }
+  throw Error(text);
+}
+
+}  // namespace dapple

@@ -1,0 +1,142 @@
+// A render that was ended and went on is the render that was not: the same file, to the last bit.
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "integrators/integrator.h"
+#include "src/image/image_io.h"
+#include "tests/app/program.h"
+
+namespace dapple {
+namespace {
+
+using Resume = ProgramTest;
+
+class ReproducibleFile : public ProgramTest, public testing::WithParamInterface<std::string_view> {
+ protected:
+  /// Renders with these further options and gives the file. Without pilots, which take most of the time of so short a
+  /// render; tests/slow has them.
+  std::string Render(const std::string& options) const {
+    const std::string command = "shared.pbrt --quiet --photons 9000 --no-guide --radius 0.2 --integrator " +
+                                std::string(GetParam()) + " -o a.exr " + options;
+    const ProgramResult result = Run(command);
+    EXPECT_EQ(result.exitCode, 0) << command;
+    EXPECT_EQ(result.err, "") << command;
+    return Read("a.exr");
+  }
+};
+
+TEST_P(ReproducibleFile, WithAnyThreadsCheckpointsBreaksAndSnapshots) {
+  WriteSceneOfSharedWork("shared.pbrt");
+  const std::string whole = Render("--passes 4 --threads 1");
+  ASSERT_FALSE(whole.empty());
+  const std::string half = Render("--passes 2 --threads 1");
+  for (const std::string threads : {"1", "2", "3", "16"}) {
+    EXPECT_TRUE(Render("--passes 4 --threads " + threads) == whole) << threads << " threads";
+    const std::string all = " --checkpoint 0.0001 --snapshots 1 --threads " + threads;
+    EXPECT_TRUE(Render("--passes 2" + all) == half) << threads << " threads";
+    EXPECT_TRUE(Render("--passes 4 --resume" + all) == whole) << threads << " threads";
+    EXPECT_TRUE(Read("a.00002.exr") == half) << "a snapshot is the picture of its passes";
+    EXPECT_TRUE(Read("a.00004.exr") == whole);
+    std::filesystem::remove(Path("a.exr.checkpoint"));
+  }
+  EXPECT_FALSE(Render("--passes 4 --seed 1") == whole) << "another seed, another noise";
+}
+
+std::vector<std::string_view> Names() { return IntegratorNames(); }
+
+INSTANTIATE_TEST_SUITE_P(All, ReproducibleFile, testing::ValuesIn(Names()),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST_F(Resume, AfterASignalTheSameCommandEndsInTheSameFile) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --integrator path --passes 1500 --aov albedo,depth -o a.exr";
+  ASSERT_EQ(Run(command + " --quiet").exitCode, 0);
+  const std::string whole = Read("a.exr");
+  std::filesystem::remove(Path("stderr.txt"));
+  EXPECT_EQ(RunAndSignal(command, SIGTERM, " %: 1 pass, ").exitCode, 128 + SIGTERM);
+  EXPECT_LT(std::get<int>(ReadExrMetadata(Path("a.exr")).at("passes")), 1500);
+  const ProgramResult resumed = Run(command + " --resume");
+  EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+  EXPECT_TRUE(Contains(resumed.err, "a.exr.checkpoint: going on after "));
+  EXPECT_TRUE(Read("a.exr") == whole);
+}
+
+TEST_F(Resume, ARangeOfPassesGoesOnToo) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --quiet --integrator path -o part.dapple";
+  ASSERT_EQ(Run(command + " --passes 3:9").exitCode, 0);
+  const std::string whole = Read("part.dapple");
+  ASSERT_EQ(Run(command + " --passes 3:5 --checkpoint 60").exitCode, 0);
+  ASSERT_EQ(Run(command + " --passes 3:9 --resume").exitCode, 0);
+  EXPECT_TRUE(Read("part.dapple") == whole);
+  const ProgramResult other = Run(command + " --passes 4:9 --resume");
+  EXPECT_EQ(other.exitCode, 1);
+  EXPECT_EQ(other.err,
+            "part.dapple.checkpoint: error: it holds passes 3 to 8, more than the 4 to 8 that are asked for\n");
+}
+
+TEST_F(Resume, BeginsWhereThereIsNoCheckpointYet) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result = Run("tiny.pbrt --integrator path --passes 2 --resume -o a.exr");
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_TRUE(Contains(result.err, "a.exr.checkpoint: not there yet; beginning with the first pass\n"));
+}
+
+TEST_F(Resume, RefusesTheCheckpointOfAnotherRenderAndSaysWhatDiffers) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "--quiet -o a.exr --passes ";
+  ASSERT_EQ(Run(command + "3 tiny.pbrt --integrator path --checkpoint 60").exitCode, 0);
+  const std::string checkpoint = Read("a.exr.checkpoint"), picture = Read("a.exr");
+  Write("moved.pbrt", Read("tiny.pbrt") + "Translate 0 0.1 0\nShape \"sphere\" \"float radius\" 0.1\n");
+  const auto difference = [&](const std::string& arguments) {
+    const ProgramResult result = Run(command + arguments + " --resume");
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_TRUE(Read("a.exr.checkpoint") == checkpoint && Read("a.exr") == picture) << "nothing is touched";
+    return result.err;
+  };
+  const auto message = [](const std::string& what) {
+    return "a.exr.checkpoint: error: it is of another render: " + what + "; remove it, or render without --resume\n";
+  };
+  EXPECT_EQ(difference("3 tiny.pbrt --integrator path --seed 5"), message("seed 0, not 5"));
+  EXPECT_EQ(difference("3 tiny.pbrt --integrator light_tracing"), message("integrator path, not light_tracing"));
+  EXPECT_EQ(difference("3 tiny.pbrt --integrator path --clamp 2"), message("clamp none, not 2"));
+  EXPECT_EQ(difference("3 tiny.pbrt --integrator path --aov normal"), message("aov none, not normal"));
+  EXPECT_EQ(difference("3 moved.pbrt --integrator path"), message("the scene's content"));
+  EXPECT_EQ(difference("2 tiny.pbrt --integrator path"),
+            "a.exr.checkpoint: error: it holds passes 0 to 2, more than the 0 to 1 that are asked for\n");
+  Write("a.exr.checkpoint", checkpoint.substr(0, checkpoint.size() - 1));
+  EXPECT_TRUE(BeginsWith(Run(command + "3 tiny.pbrt --integrator path --resume").err,
+                         "a.exr.checkpoint: error: the file is damaged"));
+}
+
+TEST_F(Resume, TheFileRecordsTheTimeOfAllParts) {
+  WriteScene("tiny.pbrt");
+  const auto seconds = [&] { return std::get<double>(ReadExrMetadata(Path("a.exr")).at("seconds")); };
+  ASSERT_EQ(Run("tiny.pbrt --quiet --integrator path --time 0.3 --checkpoint 60 -o a.exr").exitCode, 0);
+  const double first = seconds();
+  ASSERT_EQ(Run("tiny.pbrt --quiet --integrator path --time 0.1 --resume -o a.exr").exitCode, 0);
+  EXPECT_GT(seconds(), first);
+}
+
+TEST_F(Resume, AClampIsRecordedAndTakesLightAway) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --quiet --integrator path --passes 4 -o a.exr";
+  const auto sum = [&] {
+    double total = 0;
+    for (const float value : ReadImage(Path("a.exr")).Values()) total += static_cast<double>(value);
+    return total;
+  };
+  ASSERT_EQ(Run(command).exitCode, 0);
+  EXPECT_FALSE(ReadExrMetadata(Path("a.exr")).contains("clamp"));
+  const double all = sum();
+  ASSERT_EQ(Run(command + " --clamp 0.03125").exitCode, 0);
+  EXPECT_EQ(std::get<double>(ReadExrMetadata(Path("a.exr")).at("clamp")), 0.03125);
+  EXPECT_LT(sum(), 0.9 * all);
+  EXPECT_LE(std::ranges::max(ReadImage(Path("a.exr")).Values()), 0.03125f * 1.0001f);
+}
+
+}  // namespace
+}  // namespace dapple
