@@ -89,7 +89,7 @@ function logScale(low, high, from, to) {
   return (value) => from + (Math.log(value) - a) / (b - a) * (to - from);
 }
 function ticks(low, high) {
-  const result = [], few = Math.log10(high / low) < 1.6;
+  const result = [], few = Math.log10(high / low) < 2.6;
   for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {
     for (let d = 1; d < 10; ++d) {
       const value = d * 10 ** e;
