@@ -275,7 +275,7 @@ Color HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, co
     if (before > 0) others += static_cast<double>(bsdf.Pdf(wi, hit.wo, TransportMode::Importance)) * before;
     sum += value * (kernel(distanceSquared) / cosine * static_cast<float>(at.eta / (eta + others)));
   });
-  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, site, options_.kernel, seed, &stats.probeRays);
+  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, hit, site, options_.kernel, seed, &stats.probeRays);
   return sum / static_cast<float>(plan_->paths);
 }
 

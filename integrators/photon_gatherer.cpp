@@ -142,7 +142,7 @@ Color PhotonGatherer::Gather(const Map& map, float radius, const GatherPoint& po
     if (cosine > 0)
       sum += point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux * (kernel(distanceSquared) / cosine);
   });
-  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, site, options_.kernel, point.seed, &stats.probeRays);
+  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, hit, site, options_.kernel, point.seed, &stats.probeRays);
   return sum;
 }
 

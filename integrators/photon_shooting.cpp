@@ -23,10 +23,12 @@ int64_t BalancedLightPaths(const Scene& scene, const PathWork& work) {
   return int64_t{1} << std::lround(std::log2(paths));
 }
 
+/// A power of two as well.
 int BalancedCameraSamples(const Scene& scene, int64_t paths, const PathWork& work) {
   constexpr double kMost = 16;
   const double cameraWork = static_cast<double>(Pixels(scene)) * work.camera;
-  return static_cast<int>(std::lround(std::clamp(static_cast<double>(paths) * work.light / cameraWork, 1.0, kMost)));
+  const double samples = std::clamp(static_cast<double>(paths) * work.light / cameraWork, 1.0, kMost);
+  return 1 << std::lround(std::log2(samples));
 }
 
 GatherRadius RadiusOf(const Scene& scene, const EmissionSampler& emission, int64_t paths,

@@ -22,7 +22,8 @@ EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int 
 struct PhotonPlan {
   /// Learned by pilots whose length follows, as all else, from the arguments alone. `finalGathers`: diffuse scatterings
   /// of a camera path before it gathers. Where the options do not say how many light paths a pass has, it spends as
-  /// much on them as on one camera path a pixel; where they do, there are as many camera paths as cost as much.
+  /// much on them as on one camera path a pixel, within a quarter and four times as many paths as pixels and 2^22 at
+  /// most; where they do, there are as many camera paths as cost as much, at most 16 a pixel.
   PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
 
   PreparationUse Use() const;

@@ -81,7 +81,7 @@ EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGath
   for (const auto& light : scene.Lights()) power.push_back(static_cast<double>(light->Power().MaxComponent()));
   std::vector<PilotPhoton> pilot;
   EmissionGuide guide;
-  // Of about two photons a pixel: a small picture is not worth a long pilot.
+  // About one light path a pixel in all: a small picture is not worth a long pilot.
   const Vec2i& resolution = scene.Settings().resolution;
   const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, 1 << 15);
   const int64_t rounds[] = {most / 2, most / 2, most};

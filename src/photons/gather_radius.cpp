@@ -13,7 +13,9 @@ namespace dapple {
 
 namespace {
 
-/// A pilot no longer than a pass, but long enough to say something.
+constexpr auto kNarrowest = static_cast<float>(GatherRadius::kMinPixels / GatherRadius::kMaxPixels);
+
+/// About as many as a pass has, within bounds.
 int64_t PilotPathsFor(int64_t pathsOfPass) { return std::clamp<int64_t>(pathsOfPass, 1 << 13, 1 << 15); }
 
 /// Where the light paths of the pilot leave photons.
@@ -75,6 +77,9 @@ std::vector<GatherRadius::Finding> GatherRadius::Learn(std::vector<Vec3> positio
     for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
       const Finding& here = findings[i];
       float radius = here.radius;
+      shortened[i] = radius;
+      // Nothing is much narrower than the narrowest; and there photons may be without number.
+      if (radius <= kSameRadius * kNarrowest * Widest(here.p)) continue;
       forest.ForEachWithin(here.p, radius, [&](uint32_t j, float distanceSquared) {
         radius = std::min(radius, std::max(kSameRadius * findings[j].radius, std::sqrt(distanceSquared)));
       });
@@ -97,7 +102,6 @@ GatherRadius::Finding GatherRadius::FindingAt(const PhotonForest& forest, const 
   const double inside = static_cast<double>(std::min(squared->size(), kCounted)) - 1;
   const auto density = static_cast<float>(std::max(0.0, inside) * toPass / area);
   const float wanted = density > 0 ? std::sqrt(static_cast<float>(kPhotons) * kInvPi / density) : widest;
-  constexpr auto kNarrowest = static_cast<float>(kMinPixels / kMaxPixels);
   return {p, density, std::clamp(wanted, kNarrowest * widest, widest)};
 }
 

@@ -2,10 +2,11 @@
 //
 // A pilot of light paths tells how dense photons are. The radius at a place is the one within which a pass is expected
 // to have `kPhotons` of them, between `kMinPixels` and `kMaxPixels` pixels' widths as seen from the camera: so caustics
-// are sharp, dim light is smooth, and no focus is so narrow that a pixel's few camera rays miss it. Next to places of
-// narrower radius it is so much narrower that it does not reach them: the dark beside a caustic stays dark. It is a
-// function of the place alone, learned before the first pass: passes share it, and walks from the camera and from the
-// lights agree on it. The schedule of radius_schedule.h shrinks it with the passes.
+// are sharp, dim light is smooth, and no focus is so narrow that a pixel's few camera rays miss it. Where the
+// pilot left photons beside places of much narrower radius, it is so much narrower that it does not reach them (up to
+// the mean over a small cell), so that the dark beside a caustic gathers little of it. It is a function of the place
+// alone, learned before the first pass: passes share it, and walks from the camera and from the lights agree on it. The
+// schedule of radius_schedule.h shrinks it with the passes.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,8 @@ class GatherRadius {
     uint64_t seed = 0;
   };
   GatherRadius() = default;
-  /// Learns for passes of `paths` light paths, by a pilot of no more, at least 8,192. Depends on the arguments alone.
+  /// Learns for passes of `paths` light paths, by a pilot of about as many (8,192 to 32,768). Depends on the arguments
+  /// alone.
   GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options);
 
   GatherForecast At(const Vec3& p) const;

@@ -30,13 +30,16 @@ struct Estimate {
 };
 
 /// Of a site of the file's world.
-Estimate InverseCoverageAt(const Scene& scene, const Vec3& p, const Vec3& n, float radius) {
+Estimate InverseCoverageAt(const Scene& scene, const Vec3& p, const Vec3& n, float radius,
+                           KernelShape shape = KernelShape::Epanechnikov) {
   constexpr int kSamples = 20000;
   const GatherSite site(scene.RenderToWorld().Inverse().Point(p), n, n, radius, false);
+  SurfaceInteraction hit;  // of no shape: all that it finds must show what it is
+  hit.shape = -1;
   double sum = 0, squares = 0;
   int64_t rays = 0;
   for (uint64_t seed = 0; seed < kSamples; ++seed) {
-    const auto x = static_cast<double>(InverseCoverage(scene, site, KernelShape::Epanechnikov, seed, &rays));
+    const auto x = static_cast<double>(InverseCoverage(scene, hit, site, shape, seed, &rays));
     sum += x;
     squares += x * x;
   }
@@ -76,6 +79,25 @@ TEST(Coverage, OfAPlateSmallerThanTheDiskIsItsShareOfTheKernel) {
   // The kernel's integral over the disk of radius a is 2 t - t^2, t = (a / r)^2.
   const double t = Sqr(kPlate / kRadius);
   ExpectInverseCoverage(InverseCoverageAt(*scene, {0, 0, 0}, {0, 0, 1}, kRadius), 1 / (2 * t - t * t));
+}
+
+TEST(Coverage, StopsWhereAMirrorOrABlackFloorBegins) {
+  const std::string half =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [0 0 0 4 0 0 4 4 0 0 4 0] ";
+  for (const char* other : {"Material \"mirror\" ", "Material \"matte\" \"rgb Kd\" [0 0 0] "}) {
+    const auto scene = SceneOf(half + other + "Translate -4 0 0 " + half);
+    ExpectInverseCoverage(InverseCoverageAt(*scene, {0, 2, 0}, {0, 0, 1}, 0.5f), 2);
+  }
+}
+
+TEST(Coverage, FollowsTheKernelAndEndsAtSixtyFour) {
+  const auto scene = SceneOf("Shape \"disk\" \"float radius\" [0.05]");
+  // Shares of the kernels within t = a / r: 2 t^2 - t^4, and 3 t^2 - 2 t^3.
+  const double t = 0.1;
+  for (const auto& [shape, c] : {std::pair(KernelShape::Epanechnikov, 2 * t * t - t * t * t * t),
+                                 std::pair(KernelShape::Cone, 3 * t * t - 2 * t * t * t)}) {
+    ExpectInverseCoverage(InverseCoverageAt(*scene, {0, 0, 0}, {0, 0, 1}, 0.5f, shape), (1 - std::pow(1 - c, 64)) / c);
+  }
 }
 
 TEST(Coverage, SeesThroughWhatHangsAbove) {
