@@ -48,6 +48,11 @@ EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int 
   return LearnEmissionGuide(scene, options.maxDepth, finalGathers, seed);
 }
 
+int64_t EstimateLightPaths(const Scene& scene, const IntegratorOptions& options, uint64_t seed) {
+  if (options.photonsPerPass) return *options.photonsPerPass;
+  return BalancedLightPaths(scene, EstimateWork(scene, EmissionSampler(scene), options.maxDepth, 0, seed));
+}
+
 PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed)
     // One scattering before the photon lands, one where it is gathered.
     : isNeeded(scene.Facts().CanUsePhotons() && options.maxDepth >= 2),

@@ -18,6 +18,9 @@ int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options);
 /// What the pilot of emission has learned or learns now, as the options say; `finalGathers` as below.
 EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
 
+/// About as many light paths as `PhotonPlan` gives a pass, found without a guide: at most a factor of two off or so.
+int64_t EstimateLightPaths(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
+
 /// How photons are emitted, how many, within what radius they are gathered, and by how many camera paths.
 struct PhotonPlan {
   /// Learned by pilots whose length follows, as all else, from the arguments alone. `finalGathers`: diffuse scatterings

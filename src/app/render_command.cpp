@@ -126,7 +126,7 @@ void CheckMemory(const RenderOptions& options, const Scene& scene, const RenderP
   if (!options.memoryLimit) return;
   const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
   const MemoryNeeds needs = EstimateMemory(scene, options.aovs, plan.choice.name, plan.options, seed);
-  RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs, scene, plan.options);
+  RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs);
 }
 
 /// Puts into the film what was rendered before.

@@ -14,9 +14,10 @@ namespace dapple {
 /// Bytes, estimated from above.
 struct MemoryNeeds {
   int64_t film = 0;
-  int64_t files = 0;    ///< while pictures are written, or the state
-  int64_t photons = 0;  ///< of a pass, where the integrator stores any
-  int64_t pilots = 0;   ///< while they learn where photons are of use
+  int64_t files = 0;       ///< while pictures are written, or the state
+  int64_t photons = 0;     ///< of a pass, where the integrator stores any
+  int64_t lightPaths = 0;  ///< of a pass, whose photons these are
+  int64_t pilots = 0;      ///< while they learn where photons are of use
 
   int64_t Sum() const { return film + files + photons + pilots; }
 };
@@ -27,7 +28,6 @@ MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_v
 
 /// Throws `Error` where the needs and what is in use already are more than the limit: it says what takes how much, and
 /// how many photons a pass would fit.
-void RequireMemory(int64_t limit, int64_t inUse, const MemoryNeeds& needs, const Scene& scene,
-                   const IntegratorOptions& options);
+void RequireMemory(int64_t limit, int64_t inUse, const MemoryNeeds& needs);
 
 }  // namespace dapple
