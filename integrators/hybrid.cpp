@@ -1,6 +1,5 @@
 #include "integrators/hybrid.h"
 
-#include "integrators/emission_ratio.h"
 #include "integrators/pixel_loop.h"
 #include "src/base/error.h"
 #include "src/photons/coverage.h"
@@ -15,19 +14,6 @@ namespace {
 /// A weight as photons carry it: huge, but finite.
 float ToFloatRange(double weight) { return static_cast<float>(std::min(weight, 1e30)); }
 
-/// How narrow a scattering is that goes a way of this density: 0 for the widest, 1 for specular ones.
-double Sharpness(double pdf) {
-  constexpr double kHalfSharp = 10;  // per solid angle: a lobe of about 0.1 sr
-  return pdf / (pdf + kHalfSharp);
-}
-
-/// The probability with which a camera path goes on, along a way of this density, from where it gathered so many
-/// photons.
-double ContinueProbability(double pdf, double photons) {
-  const double sharpness = Sharpness(pdf);
-  return sharpness + (1 - sharpness) / (1 + photons);
-}
-
 }  // namespace
 
 HybridIntegrator::HybridIntegrator(const IntegratorOptions& options) : options_(options) {
@@ -41,7 +27,7 @@ void HybridIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   plan_.emplace(scene, options_, 0, seed);
 }
 
-HybridIntegrator::MergeSite HybridIntegrator::SiteAt(const Vec3& p, const Merging& merging) const {
+MergeSite HybridIntegrator::SiteAt(const Vec3& p, const Merging& merging) const {
   const GatherForecast forecast = plan_->radius.At(p);
   const double factorSquared = Sqr(static_cast<double>(merging.radiusFactor));
   return {forecast.radius * merging.radiusFactor,
@@ -61,78 +47,11 @@ PassStats HybridIntegrator::RenderPass(int pass, Film& film) const {
   return stats;
 }
 
-/// The weights of a light path, vertex by vertex.
-class HybridIntegrator::LightWalk {
- public:
-  LightWalk(const HybridIntegrator& hybrid, const Merging& merging, const EmissionSample& emitted)
-      : hybrid_(hybrid), merging_(merging), emitted_(emitted), light_(LightOf(hybrid, emitted.light)) {}
-
-  /// At a surface; the sums for `Photon`.
-  const MergingWeights::Sums& Arrive(const LightVertex& vertex) {
-    if (vertex.scattered > 0) weights_.Arrive(AbsCosIn(vertex));
-    return weights_.Before();
-  }
-
-  void Scatter(const LightVertex& vertex, const BsdfSample& next) {
-    const double cosOut = static_cast<double>(AbsDot(vertex.hit.ng, next.wi));
-    if (vertex.scattered == 0) {
-      weights_.Begin(PathsAtFirst(vertex, next), cosOut);
-    } else if (next.IsSpecular()) {
-      weights_.ScatterSpecular(cosOut);
-    } else {
-      const MergeSite site = hybrid_.SiteAt(vertex.hit.p, merging_);
-      const double pdf = CameraPdf(vertex, next);
-      weights_.Scatter(site.eta, static_cast<double>(next.pdf), pdf * ContinueProbability(pdf, site.photons),
-                       Sharpness(pdf), cosOut);
-    }
-  }
-
- private:
-  static const Light& LightOf(const HybridIntegrator& hybrid, int light) {
-    return *hybrid.scene_->Lights()[static_cast<size_t>(light)];
-  }
-  static double AbsCosIn(const LightVertex& vertex) {
-    return static_cast<double>(AbsDot(vertex.hit.ng, vertex.hit.wo));
-  }
-
-  /// The density with which the camera's walk, coming the way that `next` goes, would go on to where the light came
-  /// from.
-  static double CameraPdf(const LightVertex& vertex, const BsdfSample& next) {
-    return static_cast<double>(vertex.bsdf.Pdf(next.wi, vertex.hit.wo, TransportMode::Radiance));
-  }
-
-  /// Of a path that leaves its first surface: the densities of light sampling there and of scattering into the light,
-  /// over that of the light path, of which `next` is the newest part.
-  double PathsAtFirst(const LightVertex& vertex, const BsdfSample& next) const {
-    const LeSample& le = emitted_.le;
-    const double distanceSquared = LengthSquared(ToDouble(vertex.hit.p) - ToDouble(le.ray.o));
-    const double ratio = EmissionRatio(emitted_.Pdf(), static_cast<double>(le.cosTheta), le.deltaPos, distanceSquared) *
-                         AbsCosIn(vertex);
-    if (next.IsSpecular()) return light_.IsDelta() ? 0 : 1 / ratio;
-    // As the camera's walk comes there.
-    SurfaceInteraction seen = vertex.hit;
-    seen.wo = next.wi;
-    const LightContext at = ContextOf(*hybrid_.scene_, seen, vertex.bsdf, hybrid_.options_.direct);
-    const SurfaceInteraction origin = OriginOf(le);
-    double paths = hybrid_.LightPdf(at, emitted_.light, vertex.hit.wo, light_.IsInfinite() ? nullptr : &origin);
-    if (!light_.IsDelta()) {
-      const double pdf = CameraPdf(vertex, next);
-      paths += pdf * ContinueProbability(pdf, hybrid_.SiteAt(vertex.hit.p, merging_).photons);
-    }
-    return paths / (ratio * static_cast<double>(next.pdf));
-  }
-
-  const HybridIntegrator& hybrid_;
-  const Merging& merging_;
-  const EmissionSample& emitted_;
-  const Light& light_;
-  MergingWeights weights_;
-};
-
 PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
+  const auto siteAt = [&](const Vec3& p) { return SiteAt(p, *merging); };
   ShotPhotons<Photon> shot = dapple::ShootPhotons<Photon>(
       *plan_, seed_, pass, [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
-        LightWalk walk(*this, *merging, emitted);
+        LightWalk walk(*scene_, options_.direct, emitted, siteAt);
         const auto store = [&](const LightVertex& v) {
           const MergingWeights::Sums& others = walk.Arrive(v);
           // Light straight from its source is sampled where it is needed.
@@ -212,7 +131,7 @@ Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceIntera
     if (walk.scattered == 0) return 1;
     double others = 0;
     if (!walk.last.isSpecular) {
-      others = LightPdf(walk.last.at, index, ray.d, hit) / static_cast<double>(walk.last.pdf);
+      others = LightPdf(*scene_, walk.last.at, index, ray.d, hit, options_.direct) / static_cast<double>(walk.last.pdf);
     }
     if (walk.weights.Unmerged().merging > 0) {
       const Vec3 n = hit ? hit->ng : Vec3(0);
@@ -222,11 +141,6 @@ Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceIntera
     }
     return 1 / (1 + others);
   });
-}
-
-double HybridIntegrator::LightPdf(const LightContext& at, int index, const Vec3& wi,
-                                  const SurfaceInteraction* hit) const {
-  return dapple::LightPdf(*scene_, at, index, wi, hit, options_.direct);
 }
 
 Color HybridIntegrator::SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,

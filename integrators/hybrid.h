@@ -10,8 +10,7 @@
 // change smoothly with the density of the scattering, and part of the weights. Radii: gather_radius.h.
 #pragma once
 
-#include "integrators/camera_path.h"
-#include "integrators/merging_weights.h"
+#include "integrators/light_walk.h"
 #include "integrators/photon_shooting.h"
 #include "src/base/octahedral.h"
 #include "src/photons/photon_map.h"
@@ -55,12 +54,6 @@ class HybridIntegrator final : public Integrator {
     int scattered = 0;
   };
 
-  /// Merging at a place: functions of the place alone, so that both walks agree on them.
-  struct MergeSite {
-    float radius;
-    double eta;      ///< weight of merging, scene units squared, see merging_weights.h
-    double photons;  ///< of this pass, expected within the radius
-  };
   MergeSite SiteAt(const Vec3& p, const Merging& merging) const;
 
   /// Leaves the map to be filled.
@@ -70,14 +63,9 @@ class HybridIntegrator final : public Integrator {
   Color EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit) const;
   Color SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,
                           const Bsdf& bsdf, Sampler& sampler, PassStats& stats) const;
-  /// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds
-  /// the direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.
-  double LightPdf(const LightContext& at, int light, const Vec3& wi, const SurfaceInteraction* hit) const;
   /// Radiance of the photons within the radius, with their weights.
   Color Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
               const Bsdf& bsdf, uint64_t seed, PassStats& stats) const;
-
-  class LightWalk;
 
   IntegratorOptions options_;
   const Scene* scene_ = nullptr;

@@ -31,7 +31,7 @@ struct PassStats {
   int64_t photonsGathered = 0;  ///< photons within reach of a query
   int64_t splats = 0;           ///< light path vertices joined to the camera
   int64_t photonMaps = 0;       ///< that were built
-  int64_t photonMapBytes = 0;   ///< of the largest of them
+  int64_t photonMapBytes = 0;   ///< of those of a pass together; of passes, the most
 
   int64_t Rays() const { return cameraRays + shadowRays + photonRays + probeRays; }
   PassStats& operator+=(const PassStats& s);

@@ -100,14 +100,15 @@ ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass
   return all;
 }
 
-/// The map of the photons, which is none where there are no photons. Adds what was done to `*stats`.
+/// The map of the photons, which is none where there are no photons. Adds what was done to `*stats`, which are of one
+/// pass.
 template <typename Photon>
 PhotonMap<Photon> BuildPhotonMap(ShotPhotons<Photon> shot, PassStats* stats) {
   *stats += shot.stats;
   if (shot.positions.empty()) return {};
   PhotonMap<Photon> map(std::move(shot.positions), std::move(shot.photons));
   ++stats->photonMaps;
-  stats->photonMapBytes = std::max(stats->photonMapBytes, map.MemoryBytes());
+  stats->photonMapBytes += map.MemoryBytes();
   return map;
 }
 

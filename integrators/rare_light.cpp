@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/camera_path.h"
-#include "integrators/emission_ratio.h"
-#include "integrators/merging_weights.h"
+#include "integrators/light_walk.h"
 #include "integrators/path.h"
 #include "integrators/photon_shooting.h"
 #include "src/base/hash.h"
@@ -37,60 +35,6 @@ struct Arrivals {
     light += a.light, lightSquared += a.lightSquared, byPaths += a.byPaths, byBoth += a.byBoth;
     return *this;
   }
-};
-
-/// The ratio of the densities with which path tracing and a photon find a light path, vertex by vertex.
-class PathDensity {
- public:
-  PathDensity(const Scene& scene, const DirectLighting& direct, const EmissionSample& emitted)
-      : scene_(scene), direct_(direct), emitted_(emitted) {}
-
-  /// At a surface after the first: but for the factor of the density with which the camera's walk goes on from there.
-  double Arrive(const LightVertex& vertex) {
-    if (vertex.scattered > 0) weights_.Arrive(AbsCosIn(vertex));
-    return weights_.Before().paths;
-  }
-
-  void Scatter(const LightVertex& vertex, const BsdfSample& next) {
-    const double cosOut = static_cast<double>(AbsDot(vertex.hit.ng, next.wi));
-    if (vertex.scattered == 0) {
-      weights_.Begin(AtFirst(vertex, next), cosOut);
-    } else if (next.IsSpecular()) {
-      weights_.ScatterSpecular(cosOut);
-    } else {
-      weights_.Scatter(0, static_cast<double>(next.pdf), CameraPdf(vertex, next), 1, cosOut);
-    }
-  }
-
- private:
-  static double AbsCosIn(const LightVertex& vertex) {
-    return static_cast<double>(AbsDot(vertex.hit.ng, vertex.hit.wo));
-  }
-  static double CameraPdf(const LightVertex& vertex, const BsdfSample& next) {
-    return static_cast<double>(vertex.bsdf.Pdf(next.wi, vertex.hit.wo, TransportMode::Radiance));
-  }
-
-  /// Light sampling at the path's first surface, and scattering from there into the light.
-  double AtFirst(const LightVertex& vertex, const BsdfSample& next) const {
-    const LeSample& le = emitted_.le;
-    const Light& light = *scene_.Lights()[static_cast<size_t>(emitted_.light)];
-    const double distanceSquared = LengthSquared(ToDouble(vertex.hit.p) - ToDouble(le.ray.o));
-    const double ratio = EmissionRatio(emitted_.Pdf(), static_cast<double>(le.cosTheta), le.deltaPos, distanceSquared) *
-                         AbsCosIn(vertex);
-    if (next.IsSpecular()) return light.IsDelta() ? 0 : 1 / ratio;
-    SurfaceInteraction seen = vertex.hit;
-    seen.wo = next.wi;
-    const SurfaceInteraction origin = OriginOf(le);
-    const double sampled = LightPdf(scene_, ContextOf(scene_, seen, vertex.bsdf, direct_), emitted_.light,
-                                    vertex.hit.wo, light.IsInfinite() ? nullptr : &origin, direct_);
-    const double scattered = light.IsDelta() ? 0 : CameraPdf(vertex, next);
-    return (sampled + scattered) / (ratio * static_cast<double>(next.pdf));
-  }
-
-  const Scene& scene_;
-  const DirectLighting& direct_;
-  const EmissionSample& emitted_;
-  MergingWeights weights_;
 };
 
 constexpr int kGridPixels = 1024;
@@ -212,7 +156,7 @@ PlaceMap MapOf(std::vector<Place>* places) {
   return result;
 }
 
-/// Adds what the light path brings to the places around the vertex. `paths` as `PathDensity::Arrive` gives it.
+/// Adds what the light path brings to the places around the vertex. `paths` as `LightWalk::Arrive` gives it.
 void Arrive(const std::vector<Place>& places, const PlaceMap& map, const LightVertex& vertex, double paths,
             double lightPaths, double darkest, std::vector<Arrivals>* arrivals) {
   map.map.ForEachWithin(vertex.hit.p, map.longestReach, [&](const Vec3&, uint32_t index, float distanceSquared) {
@@ -239,20 +183,21 @@ std::vector<Arrivals> ShootLight(const Scene& scene, const IntegratorOptions& op
                                  const std::vector<Place>& places, const PlaceMap& map, double darkest) {
   constexpr uint64_t kShooting = 5;
   const EmissionSampler emission(scene, GuideOf(scene, options, 0, seed));
-  const auto lightPaths = static_cast<double>(LightPathsOfPass(scene, options));
+  const auto lightPaths = static_cast<double>(EstimateLightPaths(scene, options, seed));
+  const auto noMerging = [](const Vec3&) { return MergeSite(); };
   using Chunk = std::vector<Arrivals>;
   const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(
       emission, Hash(seed, kShooting), 0, kRareLightPaths,
       [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
         chunk.resize(places.size());
-        PathDensity density(scene, options.direct, emitted);
+        LightWalk walk(scene, options.direct, emitted, noMerging);
         const auto visit = [&](const LightVertex& vertex) {
-          const double paths = density.Arrive(vertex);
+          const double paths = walk.Arrive(vertex).paths;
           if (vertex.scattered > 0 && !vertex.bsdf.IsPurelySpecular())
             Arrive(places, map, vertex, paths, lightPaths, darkest, &chunk);
         };
         TraceLightPath(scene, emitted, sampler, options.maxDepth, visit,
-                       [&](const LightVertex& vertex, const BsdfSample& next) { density.Scatter(vertex, next); });
+                       [&](const LightVertex& vertex, const BsdfSample& next) { walk.Scatter(vertex, next); });
       });
   std::vector<Arrivals> sums(places.size());
   for (const Chunk& chunk : chunks)

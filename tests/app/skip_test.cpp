@@ -72,6 +72,17 @@ TEST_F(Skip, NoPhotonIsTracedWhereNoneCouldBeGathered) {
   }
 }
 
+TEST_F(Skip, NoCausticMapIsBuiltWhereNothingMakesCaustics) {
+  const std::string option = "--integrator photon_mapping --photons 1000", floor = kMatte + kFloor;
+  const nlohmann::json diffuse = Stats(kPoint + floor + kBall, option);
+  const nlohmann::json caustic = Stats(kPoint + kMirror + kBall + floor, option);
+  EXPECT_EQ(diffuse["photonMaps"]["built"], 1);
+  EXPECT_EQ(caustic["photonMaps"]["built"], 2);
+  // What each pilot learned: the guide, radii of all photons, and those of caustics.
+  EXPECT_EQ(diffuse["tables"]["learned"], 2);
+  EXPECT_EQ(caustic["tables"]["learned"], 3);
+}
+
 TEST_F(Skip, ASceneWithoutAnEnvironmentBuildsNoTableOfOne) {
   WriteMap("sky.exr", 1);
   const nlohmann::json none = Stats(kPoint + kMatte + kFloor);
