@@ -26,12 +26,20 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
 }
 
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last,
-                   const DirectLighting& direct) {
-  return EmittedAlong(scene, ray, hit, [&](int index) -> double {
+                   PassStats& stats, const DirectLighting& direct) {
+  return EmittedAlong(scene, ray, hit, stats, [&](int index) -> double {
     if (last.isSpecular || direct.technique == DirectTechnique::Bsdf) return 1;
     if (direct.technique == DirectTechnique::Light) return 0;
     return PowerHeuristic(last.pdf, LightPdf(scene, last.at, index, ray.d, hit, direct));
   });
+}
+
+std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, double uLobe,
+                                      const Vec2d& uDirection, PassStats& stats) {
+  std::optional<BsdfSample> next = bsdf.Sample(hit.wo, uLobe, uDirection, TransportMode::Radiance);
+  // The BSDF gives no sample whose weight is not finite.
+  if (!next && !bsdf.Albedo(hit.wo).IsFinite()) stats.nonFinite.Add(NonFiniteSource::MaterialAt(scene, hit));
+  return next;
 }
 
 double LightPdf(const Scene& scene, const LightContext& at, int index, const Vec3& wi, const SurfaceInteraction* hit,

@@ -1,6 +1,8 @@
 // What camera paths of all integrators share: the first ray, light that a path runs into, light that is sampled for it.
 #pragma once
 
+#include <cmath>
+
 #include "integrators/integrator.h"
 #include "src/sampling/sampler.h"
 #include "src/scene/scene.h"
@@ -25,13 +27,18 @@ struct LastScattering {
 };
 
 /// Radiance that the path's last ray runs into: the sum over the lights it finds of their radiance times
-/// `weigh(int light)`. `hit` is null where the ray left the scene.
+/// `weigh(int light)`. `hit` is null where the ray left the scene. As all that follows: what is not finite is left out
+/// and counted.
 template <typename Weigh>
-Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, Weigh&& weigh);
+Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, PassStats& stats, Weigh&& weigh);
 
 /// The same, weighted against light sampling by the power heuristic (unless `direct` leaves all to one of the two).
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last,
-                   const DirectLighting& direct = {});
+                   PassStats& stats, const DirectLighting& direct = {});
+
+/// The way on of a camera path from `hit`; nothing where it ends.
+std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, double uLobe,
+                                      const Vec2d& uDirection, PassStats& stats);
 
 /// Radiance scattered at `hit` toward `hit.wo` of light that is sampled at the lights, times `weigh(int light, const
 /// LiSample&, double pdf)`, where `pdf` is the density of all samples together. `at` as `ContextOf` gives it. Takes
@@ -59,9 +66,11 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
 bool SurvivesRoulette(int scattered, double u, float etaScale, Color* throughput);
 
 template <typename Weigh>
-Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, Weigh&& weigh) {
+Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, PassStats& stats, Weigh&& weigh) {
   const auto weighted = [&](int light, const Color& radiance) {
-    return radiance.IsBlack() ? radiance : radiance * static_cast<float>(weigh(light));
+    if (radiance.IsBlack()) return radiance;
+    return Finite(radiance * static_cast<float>(weigh(light)), &stats.nonFinite,
+                  [&] { return radiance.IsFinite() ? NonFiniteSource::Integrator() : NonFiniteSource::Light(light); });
   };
   Color sum;
   if (hit) {
@@ -92,7 +101,11 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
     ++stats.shadowRays;
     if (!scene.Unoccluded(scene.ShadowRay(hit, *li))) return Color();
     const double pdf = picked.probability * li->pdf;
-    return scattered * static_cast<float>(weigh(picked.index, *li, count * pdf) / pdf);
+    return Finite(scattered * static_cast<float>(weigh(picked.index, *li, count * pdf) / pdf), &stats.nonFinite, [&] {
+      if (!(li->L.IsFinite() && IsFinite(li->wi) && std::isfinite(li->pdf) && li->pdf > 0))
+        return NonFiniteSource::Light(picked.index);
+      return SourceAt(scene, hit, [&] { return bsdf.Eval(hit.wo, li->wi, TransportMode::Radiance); });
+    });
   };
   if (count == 1) return sample(uDirection);
   Color sum;

@@ -60,7 +60,8 @@ PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
                                 ToFloatRange(others.merging), ToFloatRange(others.paths), v.scattered});
         };
         const auto scatter = [&](const LightVertex& v, const BsdfSample& next) { walk.Scatter(v, next); };
-        chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store, scatter);
+        AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store, scatter), emitted,
+                     &chunk.stats);
       });
   PassStats stats;
   merging->map = BuildPhotonMap(std::move(shot), &stats);
@@ -75,7 +76,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
   for (;;) {
     ++stats.cameraRays;
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(walk.ray);
-    radiance += walk.throughput * EmittedAlong(walk, hit ? &*hit : nullptr);
+    radiance += walk.throughput * EmittedAlong(walk, hit ? &*hit : nullptr, stats);
     if (!hit) return radiance;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
@@ -100,7 +101,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
       radiance += walk.throughput * SampleDirectLight(walk, site, *hit, bsdf, sampler, stats);
     }
 
-    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
+    const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
     if (!next) return radiance;
     walk.throughput *= next->weight;
     etaScale *= next->eta * next->eta;
@@ -125,9 +126,9 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
   }
 }
 
-Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit) const {
+Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit, PassStats& stats) const {
   const Ray& ray = walk.ray;
-  return dapple::EmittedAlong(*scene_, ray, hit, [&](int index) -> double {
+  return dapple::EmittedAlong(*scene_, ray, hit, stats, [&](int index) -> double {
     if (walk.scattered == 0) return 1;
     double others = 0;
     if (!walk.last.isSpecular) {
@@ -190,7 +191,8 @@ Color HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, co
     sum += value * (kernel(distanceSquared) / cosine * static_cast<float>(at.eta / (eta + others)));
   });
   if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, hit, site, options_.kernel, seed, &stats.probeRays);
-  return sum / static_cast<float>(plan_->paths);
+  return Finite(sum / static_cast<float>(plan_->paths), &stats.nonFinite,
+                [&] { return SourceOfGather(*scene_, merging.map, at.radius, hit, bsdf); });
 }
 
 }  // namespace dapple

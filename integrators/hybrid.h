@@ -60,7 +60,7 @@ class HybridIntegrator final : public Integrator {
   PassStats ShootPhotons(int pass, Merging* merging) const;
   Color Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const;
   /// Radiance that the path's last ray runs into, with its weight. `hit` is null where the ray left the scene.
-  Color EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit) const;
+  Color EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit, PassStats& stats) const;
   Color SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,
                           const Bsdf& bsdf, Sampler& sampler, PassStats& stats) const;
   /// Radiance of the photons within the radius, with their weights.

@@ -49,6 +49,7 @@ PassStats& PassStats::operator+=(const PassStats& s) {
   splats += s.splats;
   photonMaps += s.photonMaps;
   photonMapBytes = std::max(photonMapBytes, s.photonMapBytes);
+  nonFinite += s.nonFinite;
   return *this;
 }
 

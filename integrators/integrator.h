@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "integrators/non_finite.h"
 #include "src/image/film.h"
 #include "src/photons/kernel.h"
 #include "src/scene/scene.h"
@@ -32,6 +33,7 @@ struct PassStats {
   int64_t splats = 0;           ///< light path vertices joined to the camera
   int64_t photonMaps = 0;       ///< that were built
   int64_t photonMapBytes = 0;   ///< of those of a pass together; of passes, the most
+  NonFiniteCounts nonFinite;    ///< contributions that were left out, before they came to the film
 
   int64_t Rays() const { return cameraRays + shadowRays + photonRays + probeRays; }
   PassStats& operator+=(const PassStats& s);

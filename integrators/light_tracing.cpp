@@ -32,11 +32,11 @@ PassStats LightTracingIntegrator::RenderEmitters(int pass, Film& film) const {
     for (;;) {
       ++stats.cameraRays;
       const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
-      emitted += EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, {});
+      emitted += EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, {}, stats);
       if (!hit || scene_->MaterialAt(*hit)) break;
       ray = SpawnRay(*hit, ray.d);
     }
-    film.AddSample(pixel, emitted * sample.weight, pass);
+    film.AddSample(pixel, FiniteSample(emitted * sample.weight, stats), pass);
   });
 }
 
@@ -47,14 +47,14 @@ PassStats LightTracingIntegrator::RenderLightPaths(int pass, Film& film) const {
   const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(
       *emission_, seed_, pass, paths_, [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
         ++chunk.stats.photonsEmitted;
-        chunk.stats.photonRays +=
-            TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, [&](const LightVertex& vertex) {
-              // The lens is a decision of its own, apart from the walk's.
-              constexpr int kLensBlock = 1 << 16;
-              Sampler lens = sampler;
-              lens.StartBlock(kLensBlock + vertex.scattered);
-              Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths_), pass, film, chunk.stats);
-            });
+        const auto join = [&](const LightVertex& vertex) {
+          // The lens is a decision of its own, apart from the walk's.
+          constexpr int kLensBlock = 1 << 16;
+          Sampler lens = sampler;
+          lens.StartBlock(kLensBlock + vertex.scattered);
+          Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths_), pass, film, chunk.stats);
+        };
+        AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, join), emitted, &chunk.stats);
       });
   PassStats sum;
   for (const Chunk& chunk : chunks) sum += chunk.stats;
@@ -69,8 +69,9 @@ void LightTracingIntegrator::Join(const LightVertex& vertex, const Vec2d& uLens,
   if (!join) return;
   const Imath::Box2d reach = film.SplatBounds();
   if (!reach.intersects(Vec2d(join->film.x, join->film.y))) return;
-  const Color value = vertex.flux * vertex.bsdf.Eval(hit.wo, join->wi, TransportMode::Importance) *
-                      (weight * join->We / static_cast<float>(join->pdf));
+  const auto scatter = [&] { return vertex.bsdf.Eval(hit.wo, join->wi, TransportMode::Importance); };
+  const Color value = Finite(vertex.flux * scatter() * (weight * join->We / static_cast<float>(join->pdf)),
+                             &stats.nonFinite, [&] { return SourceAt(*scene_, hit, scatter); });
   if (value.IsBlack()) return;
   ++stats.shadowRays;
   if (!scene_->Unoccluded(SpawnRayTo(hit, join->lens, 0, Vec3(0)))) return;

@@ -26,7 +26,7 @@ Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) cons
   for (int scattered = 0;;) {
     ++stats.cameraRays;
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
-    radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, direct_);
+    radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, stats, direct_);
     if (!hit) return radiance;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
@@ -46,7 +46,7 @@ Color PathIntegrator::Radiance(Ray ray, Sampler& sampler, PassStats& stats) cons
     if (!bsdf.IsPurelySpecular())
       radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, direct_);
 
-    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
+    const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
     if (!next) return radiance;
     throughput *= next->weight;
     etaScale *= next->eta * next->eta;

@@ -52,7 +52,7 @@ PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, PassStats* sta
       if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
       chunk.Store(v.hit.p, {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
     };
-    chunk.stats.photonRays += TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store);
+    AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store), emitted, &chunk.stats);
   };
   ShotPhotons<Photon> shot = ShootPhotons<Photon>(*plan_, seed_, pass, trace);
   PhotonPass photons{{}, {}, 1 / static_cast<float>(plan_->paths), RadiusFactor(pass)};
@@ -75,7 +75,7 @@ Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photon
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
     // Sources that a gathering surface sees by specular ones reach it as caustic photons.
     if (!hasGathered || !last.isSpecular)
-      radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, options_.direct);
+      radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, stats, options_.direct);
     if (!hit) return radiance;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
@@ -99,7 +99,7 @@ Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photon
       radiance += throughput * Gather(photons, point, stats);
     }
 
-    const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Radiance);
+    const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
     if (!next) return radiance;
     throughput *= next->weight;
     etaScale *= next->eta * next->eta;
@@ -143,7 +143,7 @@ Color PhotonGatherer::Gather(const Map& map, float radius, const GatherPoint& po
       sum += point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux * (kernel(distanceSquared) / cosine);
   });
   if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, hit, site, options_.kernel, point.seed, &stats.probeRays);
-  return sum;
+  return Finite(sum, &stats.nonFinite, [&] { return SourceOfGather(*scene_, map, radius, hit, point.bsdf); });
 }
 
 }  // namespace dapple

@@ -44,6 +44,14 @@ struct PhotonPlan {
 /// The same for photons that met nothing but specular surfaces.
 GatherRadius CausticRadius(const PhotonPlan& plan, const Scene& scene, const IntegratorOptions& options, uint64_t seed);
 
+/// Counts what a walk has traced of a light path, and where it ended at a value that is not finite.
+inline void AddLightPath(const LightPathEnd& end, const EmissionSample& emitted, PassStats* stats) {
+  stats->photonRays += end.segments;
+  if (!end.isNonFinite) return;
+  stats->nonFinite.Add(end.material < 0 ? NonFiniteSource::Light(emitted.light)
+                                        : NonFiniteSource::Material(end.material));
+}
+
 /// Photons where they met surfaces: `photons[i]` stands at `positions[i]`.
 template <typename Photon>
 struct ShotPhotons {
@@ -98,6 +106,17 @@ ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass
   }
   all.stats.photonsStored += static_cast<int64_t>(count);
   return all;
+}
+
+/// Why what was gathered at `hit` is not finite, though all photons are.
+template <typename Map>
+NonFiniteSource SourceOfGather(const Scene& scene, const Map& map, float radius, const SurfaceInteraction& hit,
+                               const Bsdf& bsdf) {
+  Color sum;
+  map.ForEachWithin(hit.p, radius, [&](const Vec3&, const auto& photon, float) {
+    sum += bsdf.Eval(hit.wo, photon.wi.Decode(), TransportMode::Radiance);
+  });
+  return SourceAt(scene, hit, [&] { return sum; });
 }
 
 /// The map of the photons, which is none where there are no photons. Adds what was done to `*stats`, which are of one

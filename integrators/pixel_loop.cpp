@@ -68,7 +68,7 @@ PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,
       Sampler sampler = Sampler::ForPixel(seed, pixel, pass, i, samples);
       const PixelSample sample = SamplePixel(scene, film, pixel, sampler);
       const float weight = sample.weight / static_cast<float>(samples);
-      film.AddSample(pixel, radiance(sample.camera, sampler, stats) * weight, pass);
+      film.AddSample(pixel, FiniteSample(radiance(sample.camera, sampler, stats) * weight, stats), pass);
     }
   });
 }

@@ -14,6 +14,11 @@ namespace dapple {
 /// is still in the cache for the next.
 PassStats ForEachPixel(const Film& film, const std::function<void(const Vec2i& pixel, PassStats& stats)>& render);
 
+/// What is added to a pixel: black, counted for the integrator, where sums of what was finite are not.
+inline Color FiniteSample(const Color& value, PassStats& stats) {
+  return Finite(value, &stats.nonFinite, [] { return NonFiniteSource::Integrator(); });
+}
+
 /// Adds an estimate of each pixel of the film's crop: the mean over `samples` camera paths of
 /// `radiance(camera, sampler, stats)`, where block 0 of the sampler is used up.
 PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,

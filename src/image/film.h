@@ -107,7 +107,10 @@ class Film {
   const PassRanges& Passes() const { return passes_; }
   int64_t PassCount() const { return passes_.Count(); }
   int64_t PassCount(int half) const { return passes_.Count(half); }
-  /// How many samples and splats were refused: a channel infinite, NaN, or at least 2^40 in magnitude.
+  /// Counts contributions that were left out before they came here: infinite or NaN.
+  void CountNonFinite(int64_t count) { nonFinite_ += static_cast<uint64_t>(count); }
+  /// How many these are, with the samples and splats that were refused here: a channel infinite, NaN, or at least 2^40
+  /// in magnitude.
   int64_t NonFiniteCount() const { return static_cast<int64_t>(nonFinite_); }
 
   /// The mean of all passes: R, G, B of the crop, with its place in the picture. Black before the first pass.

@@ -4,6 +4,7 @@
 
 #include "src/io/build_material_types.h"
 #include "src/io/nearest_name.h"
+#include "src/io/text_file.h"
 #include "src/materials/coated_materials.h"
 #include "src/materials/conductor_materials.h"
 #include "src/materials/dielectric_materials.h"
@@ -180,7 +181,10 @@ int Materials::IndexOf(int material) {
   std::unique_ptr<Material> built =
       AtLocation(description.location, [&] { return Build(values_, description, &chain); });
   index = built ? static_cast<int>(built_.size()) : -1;
-  if (built) built_.push_back(std::move(built));
+  if (!built) return *index;
+  built_.push_back(std::move(built));
+  const std::string name = Quoted(description.name.empty() ? description.type : description.name, 100);
+  names_.push_back(description.IsGiven() ? fmt::format("{} ({})", name, description.location.ToString()) : name);
   return *index;
 }
 

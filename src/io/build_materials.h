@@ -23,11 +23,14 @@ class Materials {
   bool IsInterface(int material) const;
   /// The materials that were asked for.
   std::vector<std::unique_ptr<Material>> Take() { return std::move(built_); }
+  /// Their names and places, for messages.
+  std::vector<std::string> TakeNames() { return std::move(names_); }
 
  private:
   Values& values_;
   std::vector<std::optional<int>> indices_;
   std::vector<std::unique_ptr<Material>> built_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace dapple

@@ -39,6 +39,7 @@ class Assembler {
 
   void Finish() {
     parts_->materials = materials_.Take();
+    parts_->materialNames = materials_.TakeNames();
     parts_->images = values_.Images();
   }
 

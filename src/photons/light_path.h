@@ -1,6 +1,7 @@
 // The photon tracer: one light path, from its emission to its last scattering, handed vertex by vertex to a visitor.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct LightVertex {
   Color flux;      ///< that arrives here, as carried by one path
   int scattered;   ///< scattering events before this vertex: 0 for light that comes straight from its source
   bool isCaustic;  ///< there were some, and all of them were specular
+};
+
+/// How the walk along a light path ended.
+struct LightPathEnd {
+  int segments = 0;          ///< that were traced
+  bool isNonFinite = false;  ///< the flux was infinite or no number
+  int material = -1;         ///< then: of the surface that scattered it; -1: as it was emitted
 };
 
 /// The random numbers of the ray with which a light path begins. Uses block 0 of the sampler.
@@ -37,16 +45,21 @@ inline std::optional<EmissionSample> EmitPhoton(const EmissionSampler& emission,
 /// A vertex is visited only if one more scattering event there keeps the path within `maxDepth` of them. Russian
 /// roulette keeps a path with the share of its flux that a scattering leaves, so that the power of photons stays even
 /// (Jensen 2001, section 5.2). Vertex n uses block n + 1 of the sampler. Where the path goes on, `scatter(const
-/// LightVertex&, const BsdfSample&)` is called with the way it takes. Returns the number of segments traced.
+/// LightVertex&, const BsdfSample&)` is called with the way it takes. Where the flux is not finite the path
+/// ends, and no vertex sees it.
 template <typename Visitor, typename Scatter>
-int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth, Visitor&& visit,
-                   Scatter&& scatter) {
+LightPathEnd TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth,
+                            Visitor&& visit, Scatter&& scatter) {
   Ray ray = emitted.le.ray;
   Color flux = emitted.Flux();
-  int segments = 0;
+  LightPathEnd end;
+  if (!flux.IsFinite()) {
+    end.isNonFinite = true;
+    return end;
+  }
   bool allSpecular = true;
   for (int scattered = 0; scattered < maxDepth && !flux.IsBlack();) {
-    ++segments;
+    ++end.segments;
     const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
     if (!hit) break;
     const Material* material = scene.MaterialAt(*hit);
@@ -63,8 +76,14 @@ int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sa
     const double uLobe = sampler.Get1D();
     const Vec2d uDirection = sampler.Get2D();
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, uDirection, TransportMode::Importance);
+    const Color scatteredFlux = next ? flux * next->weight : Color();
+    // The BSDF gives no sample whose weight is not finite.
+    if (next ? !scatteredFlux.IsFinite() : !bsdf.Albedo(hit->wo).IsFinite()) {
+      end.isNonFinite = true;
+      end.material = scene.Primitives()[static_cast<size_t>(hit->shape)].material;
+      break;
+    }
     if (!next) break;
-    const Color scatteredFlux = flux * next->weight;
     const float keep = std::min(1.f, scatteredFlux.MaxComponent() / flux.MaxComponent());
     if (!(sampler.Get1D() < keep)) break;
     scatter(vertex, *next);
@@ -73,11 +92,12 @@ int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sa
     allSpecular &= next->IsSpecular();
     ++scattered;
   }
-  return segments;
+  return end;
 }
 
 template <typename Visitor>
-int TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth, Visitor&& visit) {
+LightPathEnd TraceLightPath(const Scene& scene, const EmissionSample& emitted, Sampler sampler, int maxDepth,
+                            Visitor&& visit) {
   return TraceLightPath(scene, emitted, sampler, maxDepth, std::forward<Visitor>(visit),
                         [](const LightVertex&, const BsdfSample&) {});
 }

@@ -15,9 +15,10 @@ constexpr double kStore = 0.5, kGather = 1.5;
 double LightWork(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed) {
   const auto chunks = ForEachLightPath<double>(
       emission, seed, 0, kPaths, [&](const EmissionSample& emitted, const Sampler& sampler, double& work) {
-        work += TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
+        const LightPathEnd end = TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
           if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) work += kStore;
         });
+        work += end.segments;
       });
   double sum = 0;
   for (const double work : chunks) sum += work;

@@ -112,7 +112,9 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
     const int pass = NextPass(budget, film);
     WithinMemory(fmt::format("pass {}", pass), [&] {
       if (!film.ExtraChannels().empty()) result.stats += RecordFirstHits(scene, seed, pass, film);
-      result.stats += integrator.RenderPass(pass, film);
+      const PassStats stats = integrator.RenderPass(pass, film);
+      film.CountNonFinite(stats.nonFinite.Total());
+      result.stats += stats;
     });
     assert(film.PassCount() == passesBefore + 1);
     ++result.passes;

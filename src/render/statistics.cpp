@@ -1,5 +1,6 @@
 #include "src/render/statistics.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace dapple {
@@ -10,7 +11,7 @@ TableUse AllTables(const RenderNeeds& needs) {
 }
 
 std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const RenderNeeds& needs,
-                             const Film& film) {
+                             const Film& film, const Scene& renderedScene) {
   const PassStats& stats = result.stats;
   const SceneResources& scene = needs.scene;
   nlohmann::ordered_json json = {
@@ -43,10 +44,20 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
       {"textures", {{"opened", scene.images.opened}, {"bytes", scene.images.bytes}}},
       {"geometry", {{"bytes", scene.geometryBytes}}},
       {"nonFinite", film.NonFiniteCount()},
+      {"nonFiniteSources", nlohmann::ordered_json::object()},
       {"noise", nullptr},
   };
+  for (const auto& [source, count] : stats.nonFinite.BySource())
+    json["nonFiniteSources"][NameOf(source, renderedScene)] = count;
   if (const auto noise = film.NoiseEstimate()) json["noise"] = *noise;
   return json.dump(2) + "\n";
+}
+
+std::string DescribeNonFinite(const NonFiniteCounts& counts, const Scene& scene) {
+  std::string text;
+  for (const auto& [source, count] : counts.BySource())
+    text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", count, NameOf(source, scene));
+  return text;
 }
 
 }  // namespace dapple

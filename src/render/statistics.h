@@ -18,10 +18,14 @@ struct RenderNeeds {
 /// kind, "photons" (emitted, stored; begun in pilots), "photonMaps" (built, bytes of the largest), "gathers" (count,
 /// photons within reach), "splats", "tables" (how many of the environment, of other lights, of the choice among lights,
 /// of what pilots learned; bytes of all), "textures" (image files opened, bytes that are kept), "geometry" (bytes),
-/// "nonFinite" (samples refused by the film) and "noise" (estimated relative MSE; null before two passes). Ends with a
+/// "nonFinite" (contributions left out), "nonFiniteSources" (how many of these, of the passes of this run, each light,
+/// material or the integrator gave) and "noise" (estimated relative MSE; null before two passes). Ends with a
 /// line end.
 std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const RenderNeeds& needs,
-                             const Film& film);
+                             const Film& film, const Scene& scene);
+
+/// "7 of light 0 (point), 2 of material \"wall\" (scene.pbrt:3:1)": what gave values that are not finite.
+std::string DescribeNonFinite(const NonFiniteCounts& counts, const Scene& scene);
 
 /// All tables that a render built.
 TableUse AllTables(const RenderNeeds& needs);

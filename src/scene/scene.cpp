@@ -62,6 +62,7 @@ void AddLights(const std::vector<std::unique_ptr<Light>>& lights, const Vec3& ce
 Scene::Scene(SceneParts parts)
     : primitives_(std::move(parts.primitives)),
       materials_(std::move(parts.materials)),
+      materialNames_(std::move(parts.materialNames)),
       lights_(std::move(parts.lights)),
       camera_(std::move(parts.camera)),
       settings_(std::move(parts.settings)),
@@ -122,6 +123,11 @@ void Scene::PrepareLights(const SceneExtent& extent) {
 
 Ray Scene::ShadowRay(const SurfaceInteraction& from, const LiSample& to) const {
   return SpawnRayTo(from, to.p, to.pError, to.n);
+}
+
+std::string Scene::MaterialName(int index) const {
+  const auto i = static_cast<size_t>(index);
+  return i < materialNames_.size() ? materialNames_[i] : std::to_string(index);
 }
 
 const Material* Scene::MaterialAt(const SurfaceInteraction& hit) const {

@@ -33,6 +33,7 @@ struct SceneParts {
   std::vector<GeometryGroup> groups;
   std::vector<GeometryInstance> instances;
   std::vector<std::unique_ptr<Material>> materials;
+  std::vector<std::string> materialNames;  ///< for messages: one a material, or none at all
   std::vector<std::unique_ptr<Light>> lights;
   std::unique_ptr<Camera> camera;
   RenderSettings settings;
@@ -57,6 +58,8 @@ class Scene {
 
   /// Null: an interface that light passes unchanged.
   const Material* MaterialAt(const SurfaceInteraction& hit) const;
+  /// For messages: "\"glass\" (scene.pbrt:12:1)", or its number.
+  std::string MaterialName(int index) const;
   /// The place in `Lights()` of the light that this surface is; -1 where it emits nothing.
   int AreaLightAt(const SurfaceInteraction& hit) const { return primitives_[static_cast<size_t>(hit.shape)].light; }
 
@@ -87,6 +90,7 @@ class Scene {
 
   std::vector<ScenePrimitive> primitives_;
   std::vector<std::unique_ptr<Material>> materials_;
+  std::vector<std::string> materialNames_;
   std::vector<std::unique_ptr<Light>> lights_;
   std::vector<int> infiniteLights_;
   std::vector<const Light*> lightsThatWantReceivers_;
