@@ -10,17 +10,19 @@ JOBS ?= $(shell memory=$$(awk '/MemAvailable/ { print int($$2 / 1500000) }' /pro
                 [ -n "$$memory" ] && [ "$$memory" -lt "$$processors" ] && processors=$$memory; \
                 [ "$$processors" -ge 1 ] && echo $$processors || echo 1)
 
-.PHONY: help packages build demo test bench gallery format clean
+.PHONY: help packages build demo test sanitize fuzz bench gallery format clean
 
 help:
 	@echo 'make demo    install what is missing, build, render a caustic to build/demo.png'
 	@echo 'make test    install what is missing, build, run all tests'
 	@echo 'make build   install what is missing, build; the program is build/release/dapple'
+	@echo 'make sanitize  build and run the tests that watch memory and threads, with sanitizers (bounded: for CI)'
+	@echo 'make fuzz  build and run the fuzz targets of the readers, SECONDS each (clang)'
 	@echo 'make bench   build, run the benchmarks'
 	@echo 'make gallery build, compare all algorithms on all scenes: build/gallery/index.html'
 	@echo 'make format  clang-format all sources'
 	@echo 'make clean   remove build/'
-	@echo 'Variables: PRESET=release|portable|debug|asan|tsan, JOBS=N'
+	@echo 'Variables: PRESET=release|portable|debug|asan|tsan, JOBS=N, SECONDS=N'
 
 packages:
 	@scripts/install_packages.sh
@@ -38,6 +40,26 @@ demo: packages
 # Tests labelled slow compare with the reference images in the folder that DAPPLE_REFERENCES names; without it they are skipped.
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+# A part of what `ctest --preset asan` and `ctest --preset tsan` run, for integration: all that reads files, under address
+# and undefined; all that threads share, under thread.
+SANITIZED = $(1)/tests/$(2)_tests --gtest_brief=1 --gtest_filter='$(3)'
+sanitize: packages
+	@cmake --preset asan
+	@cmake --build build/asan --parallel $(JOBS) --target image_tests io_tests
+	@$(call SANITIZED,build/asan,image,-Flip*:Filter*)
+	@$(call SANITIZED,build/asan,io,*)
+	@cmake --preset tsan
+	@cmake --build build/tsan --parallel $(JOBS) --target base_tests render_tests
+	@export TSAN_OPTIONS=suppressions=tests/tsan_suppressions.txt; \
+	  $(call SANITIZED,build/tsan,base,Parallel*:ThreadLimit*) && $(call SANITIZED,build/tsan,render,*NonFinite*:*Aov*:*Driver*)
+
+SECONDS ?= 10
+fuzz: packages
+	@scripts/install_packages.sh clang libclang-rt-14-dev
+	@cmake --preset fuzz
+	@cmake --build build/fuzz --parallel $(JOBS)
+	@scripts/fuzz -seconds $(SECONDS)
 
 bench: build
 	@for program in $(BUILD)/bench/*_bench; do echo "== $$program"; $$program || exit 1; done

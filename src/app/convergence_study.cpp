@@ -12,10 +12,12 @@
 #include <fmt/format.h>
 
 #include "src/app/format.h"
+#include "src/app/memory.h"
 #include "src/image/false_color.h"
 #include "src/image/metrics.h"
 #include "src/render/aov.h"
 #include "src/render/convergence_run.h"
+#include "src/render/memory_needs.h"
 #include "src/render/output.h"
 
 namespace dapple {
@@ -76,6 +78,7 @@ class StudyRunner {
       SceneOptions options = options_.scene;
       options.strategy = strategy;
       scene = Load(options, diagnostics_).scene;
+      RequireFilm(scene->Settings(), {}, MachineMemoryBytes());
     }
     return *scene;
   }

@@ -13,6 +13,8 @@ int64_t PeakMemoryBytes() {
   return int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB
 }
 
+int64_t MachineMemoryBytes() { return int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGESIZE); }
+
 int64_t CurrentMemoryBytes() {
   std::ifstream pages("/proc/self/statm");
   int64_t all = 0, resident = 0;

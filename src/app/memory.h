@@ -1,4 +1,4 @@
-// How much memory this process has taken.
+// How much memory this process has taken, and the machine has.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,9 @@ namespace dapple {
 
 /// The most that was resident at one time so far, in bytes.
 int64_t PeakMemoryBytes();
+
+/// What the machine has in all.
+int64_t MachineMemoryBytes();
 
 /// What of it is held now; 0 where the system does not tell.
 int64_t CurrentMemoryBytes();

@@ -96,10 +96,12 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
 }
 
 /// A picture of fewer samples than were paid for must not go unnoticed, however quiet the render.
-void WarnOfNonFinite(const Film& film) {
+void WarnOfNonFinite(const Film& film, const NonFiniteCounts& counts, const Scene& scene) {
   if (film.NonFiniteCount() == 0) return;
-  Tell(fmt::format("warning: {} left out: infinite, not a number, or too large",
-                   FormatNumberOf(film.NonFiniteCount(), "sample was", "samples were")));
+  const std::string sources = DescribeNonFinite(counts, scene);
+  Tell(fmt::format("warning: {} left out: infinite, not a number, or too large{}{}",
+                   FormatNumberOf(film.NonFiniteCount(), "contribution was", "contributions were"),
+                   sources.empty() ? "" : ": ", sources));
 }
 
 RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded, const RenderPlan& plan,
@@ -218,7 +220,7 @@ RenderRecord MakeRecord(const RenderOptions& options, const RenderOrigin& origin
 
 /// Writes all that was asked for, and says how to go on where a signal ended the render; returns the exit code.
 int Finish(const RenderOptions& options, const RenderOrigin& origin, const RenderResult& result,
-           const RenderNeeds& needs, const Film& film, int signal, Checkpoint& checkpoint) {
+           const RenderNeeds& needs, const Scene& scene, const Film& film, int signal, Checkpoint& checkpoint) {
   if (film.PassCount() == 0) {
     Tell("stopped before the first pass; no picture is written");
     return 128 + signal;
@@ -230,8 +232,8 @@ int Finish(const RenderOptions& options, const RenderOrigin& origin, const Rende
   WriteRenderOutputs(options.outputs, origin, record, film);
   if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
   if (!options.statistics.empty())
-    WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film));
-  WarnOfNonFinite(film);
+    WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film, scene));
+  WarnOfNonFinite(film, result.stats.nonFinite, scene);
   if (!options.isQuiet) PrintSummary(result, needs, film);
   if (result.stopped && isSaved) {
     Tell(fmt::format("stopped after {}; to go on, give the same command with --resume (it reads {})",
@@ -252,6 +254,7 @@ int RunRender(RenderOptions options) {
     options.outputs.push_back(DefaultOutput(options, scene.Settings()));
     CheckRenderOutput(options.outputs[0]);
   }
+  RequireFilm(scene.Settings(), options.aovs, MachineMemoryBytes());
   const RenderPlan plan = MakePlan(scene, options, diagnostics);
   if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
@@ -265,7 +268,7 @@ int RunRender(RenderOptions options) {
   if (options.resumes) Resume(options, plan, checkpoint, &film);
   const RenderResult result = RenderWithProgress(options, scene, plan, origin, signals, checkpoint, film);
   const RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
-  return Finish(options, origin, result, needs, film, signals.Signal(), checkpoint);
+  return Finish(options, origin, result, needs, scene, film, signals.Signal(), checkpoint);
 }
 
 SnapshotSchedule ParseSnapshots(const std::string& text) {

@@ -21,6 +21,7 @@
 #include <half.h>
 
 #include "src/image/atomic_file.h"
+#include "src/image/exr_header.h"
 #include "src/image/image_formats.h"
 
 namespace dapple {
@@ -127,6 +128,7 @@ Image ReadLuminanceChroma(std::string_view bytes) {
 
 Image ReadExrUnchecked(std::string_view bytes, const FileLocation& location) {
   LimitOpenExr();
+  CheckExrHeader(bytes, location);
   MemoryStream stream(bytes);
   Imf::InputFile file(stream);
   const Imf::Header& header = file.header();

@@ -16,6 +16,7 @@
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -30,9 +31,17 @@ namespace dapple {
 
 namespace {
 
-// None of the formats packs more pixels into a byte (PNG comes nearest: deflate's 1032 to 1, times 8 pixels of a bit).
-constexpr int64_t kMaxPixelsPerByte = 16384;
-constexpr int64_t kPixelsFromAnyFile = 1 << 20;
+// How many pixels a file may hold at most: one whose header says more is refused before they cost time. Deflate (PNG)
+// packs 1032 bytes into one; JPEG takes a bit for each block of 8 x 8, which the oddest subsampling spreads over 128
+// pixels; TGA's shortest run is 128 pixels in two bytes.
+int64_t MostPixels(std::string_view bytes) {
+  const auto size = static_cast<int64_t>(bytes.size());
+  if (bytes.starts_with('\xff')) return 8 * 128 * size;
+  if (!bytes.starts_with("\x89PNG") || size < 26) return 64 * size;
+  const int64_t depth = std::max<int64_t>(bytes[24], 1), type = bytes[25];
+  const int64_t channels = type == 2 ? 3 : type == 4 ? 2 : type == 6 ? 4 : 1;
+  return 1032 * 8 * size / (depth * channels);
+}
 
 static_assert(STBI_MAX_DIMENSIONS == kMaxImageSide);
 
@@ -90,6 +99,19 @@ void CheckJpegTables(std::string_view bytes, const FileLocation& location) {
   }
 }
 
+// stb_image 2.27 gives a chunk of a PNG file the memory that its length says, up to 2 GB, before it reads the chunk:
+// such files are refused beforehand.
+void CheckPngChunks(std::string_view bytes, const FileLocation& location) {
+  constexpr size_t kSignature = 8, kLengthAndType = 8, kChecksum = 4;
+  for (size_t i = kSignature; i + kLengthAndType <= bytes.size();) {
+    size_t length = 0;
+    for (size_t b = 0; b < 4; ++b) length = length << 8 | static_cast<uint8_t>(bytes[i + b]);
+    i += kLengthAndType;
+    if (length > bytes.size() - i) throw Error(location, "cannot read the image: the file ends early");
+    i += length + kChecksum;
+  }
+}
+
 struct StbFree {
   void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
@@ -137,13 +159,14 @@ Image DecodeIntegers(const Loaded<T>& loaded, ColorEncoding encoding) {
 
 Image ReadStb(std::string_view bytes, ColorEncoding encoding, const FileLocation& location) {
   if (bytes.starts_with('\xff')) CheckJpegTables(bytes, location);
+  if (bytes.starts_with("\x89PNG")) CheckPngChunks(bytes, location);
   Source source{bytes};
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_callbacks(&kCallbacks, &source, &width, &height, &channels))
     throw Error(location, fmt::format("cannot read the image: {}",
                                       source.endsEarly ? "the file ends early" : stbi_failure_reason()));
   CheckImageSize(width, height, location);
-  if (int64_t{width} * height > kPixelsFromAnyFile + kMaxPixelsPerByte * static_cast<int64_t>(bytes.size()))
+  if (int64_t{width} * height > MostPixels(bytes))
     throw Error(location, fmt::format("{} x {} pixels in {} bytes: the file ends early", width, height, bytes.size()));
   Source depth{bytes};
   if (stbi_is_16_bit_from_callbacks(&kCallbacks, &depth))

@@ -4,6 +4,7 @@
 
 #include "src/io/build_textures.h"
 #include "src/io/nearest_name.h"
+#include "src/io/text_file.h"
 #include "src/materials/named_spectra.h"
 #include "src/materials/procedural_textures.h"
 
@@ -54,7 +55,7 @@ Spectrum Values::ToSpectrum(const Parameter& parameter) const {
   if (!std::filesystem::exists(path, failure))
     throw Error(parameter.location,
                 fmt::format("no file and no spectrum is named \"{}\"{}", name, DidYouMean(name, SpectrumNames())));
-  return ReadSpectrum(path.string(), outside, parameter.location);
+  return ParseSpectrum(ReadTextFile(path, parameter.location), path.string(), outside);
 }
 
 Color Values::ToColor(const Parameter& parameter, RgbUse use) const {

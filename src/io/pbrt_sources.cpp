@@ -8,7 +8,7 @@ namespace dapple {
 
 namespace {
 
-constexpr std::size_t kDeepest = 64;
+constexpr std::size_t kDeepest = 64, kMostFiles = 100'000;
 
 PbrtSources::Source MakeSource(std::string text, const std::string& name) {
   // The heap keeps the text in place while the stack of sources grows.
@@ -31,6 +31,7 @@ PbrtSources::Source& PbrtSources::PushFile(const std::filesystem::path& path, co
     if (!canonical.empty() && source.canonicalPath == canonical)
       throw Error(includedAt, fmt::format("{} includes itself", path.string()));
   if (stack_.size() >= kDeepest) throw Error(includedAt, fmt::format("files are included more than {} deep", kDeepest));
+  if (++fileCount_ > kMostFiles) throw Error(includedAt, fmt::format("more than {} files are included", kMostFiles));
   stack_.push_back(MakeSource(ReadTextFile(path, includedAt), path.string()));
   stack_.back().canonicalPath = canonical;
   stack_.back().includedAt = includedAt;

@@ -26,7 +26,7 @@ class PbrtSources {
   /// Text from memory; `name` stands in messages.
   void PushText(std::string text, const std::string& name);
   /// A file, decompressed where needed. Throws Error at `includedAt` where it cannot be read, is being read already, or
-  /// lies deeper than 64 files.
+  /// lies deeper than 64 files, or is the 100,001st: files that include each other twice, 64 deep, would never end.
   Source& PushFile(const std::filesystem::path& path, const FileLocation& includedAt);
 
   /// The text that is read now is on top; there must be one for `Top` and `Pop`.
@@ -36,6 +36,7 @@ class PbrtSources {
 
  private:
   std::vector<Source> stack_;
+  std::size_t fileCount_ = 0;
 };
 
 }  // namespace dapple

@@ -93,6 +93,8 @@ void PbrtState::SetTransform(const Transform& transform, const FileLocation& loc
 }
 
 void PbrtState::Begin(BlockKind kind, const FileLocation& location) {
+  constexpr std::size_t kDeepest = 10'000;  // each takes half a kilobyte
+  if (blocks_.size() >= kDeepest) throw Error(location, fmt::format("blocks are more than {} deep", kDeepest));
   blocks_.push_back({kind, now_, floatTextures.Mark(), spectrumTextures.Mark(), materials.Mark(), location});
 }
 

@@ -75,7 +75,7 @@ class PbrtState {
   void Concatenate(const Transform& transform, const FileLocation& location);
   void SetTransform(const Transform& transform, const FileLocation& location);
 
-  /// Opens a block, at `location`.
+  /// Opens a block, at `location`. Throws Error where 10,000 are open.
   void Begin(BlockKind kind, const FileLocation& location);
   /// Throws Error where the innermost open block is of another kind. A Transform block of v3 restores the transform,
   /// the others restore all.

@@ -15,6 +15,9 @@ namespace dapple {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 20;
+/// What a gzip file may become: meshes and scenes shrink to a tenth or so, a file made to fill the memory to a
+/// thousandth.
+constexpr std::size_t kInflatesAnyway = std::size_t{1} << 26, kMostInflation = 100;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -28,7 +31,7 @@ struct InflateStream {
   ~InflateStream() { inflateEnd(&stream); }
 };
 
-/// All members of a gzip file. Throws Error where the data is damaged or ends early.
+/// All members of a gzip file. Throws Error where the data is damaged, ends early, or inflates beyond measure.
 std::string Decompress(std::string_view compressed, const FileLocation& file) {
   constexpr int kGzipOnly = 15 + 16;
   InflateStream inflater;
@@ -46,6 +49,8 @@ std::string Decompress(std::string_view compressed, const FileLocation& file) {
     const int status = inflate(&stream, Z_NO_FLUSH);
     consumed += given - stream.avail_in;
     result.append(buffer.get(), kChunk - stream.avail_out);
+    if (result.size() > kInflatesAnyway + kMostInflation * compressed.size())
+      throw Error(file, fmt::format("the gzip data inflates to more than {} times its size", kMostInflation));
     if (status == Z_STREAM_END) {
       const bool isAnotherMember = compressed.substr(consumed).starts_with("\x1f\x8b");
       if (!isAnotherMember) return result;

@@ -1,7 +1,7 @@
 // Lobes of rough interfaces: metals, glass, and a gloss over a diffuse base. Single scattering. See lobes.h.
 //
 // Each is a template over the distribution of its microfacets: `Ggx`, `Beckmann` or `CosinePower`, compiled for these
-// three.
+// three. (Clang learned in version 17 what their deduction guides say.)
 #pragma once
 
 #include "src/materials/lobe_flags.h"
@@ -22,6 +22,8 @@ struct RoughConductor {
   Color Albedo(const Vec3& wo) const;
   float Roughness() const { return microfacets.MinAlpha(); }
 };
+template <typename Microfacets, typename... Rest>
+RoughConductor(Microfacets, Rest...) -> RoughConductor<Microfacets>;
 
 /// The reflection alone of a rough dielectric interface: the gloss of pbrt-v3's "plastic" and "uber", and rough coats.
 /// The index may differ by side, since pbrt-v3's plastic reflects as seen from inside.
@@ -39,6 +41,8 @@ struct RoughDielectricReflection {
   Color Albedo(const Vec3& wo) const;
   float Roughness() const { return microfacets.MinAlpha(); }
 };
+template <typename Microfacets, typename... Rest>
+RoughDielectricReflection(Microfacets, Rest...) -> RoughDielectricReflection<Microfacets>;
 
 /// Indices too near to each other for the half vector of refraction to be known: use a smooth interface.
 inline bool NearIndexMatch(float eta) { return std::abs(eta - 1) < 1e-3f; }
@@ -61,6 +65,8 @@ struct RoughDielectric {
   /// Probability of reflection at a microfacet that reflects the share `fresnel`; 0 where nothing goes on.
   float ReflectionProbability(float fresnel) const;
 };
+template <typename Microfacets, typename... Rest>
+RoughDielectric(Microfacets, Rest...) -> RoughDielectric<Microfacets>;
 
 /// A rough gloss blended over a diffuse base by Fresnel (Ashikhmin and Shirley 2000; pbrt-v3, section 8.5,
 /// "substrate").
@@ -80,5 +86,7 @@ struct FresnelBlend {
   /// Probability of drawing the gloss rather than the base.
   float GlossProbability(const Vec3& wo) const;
 };
+template <typename Microfacets, typename... Rest>
+FresnelBlend(Microfacets, Rest...) -> FresnelBlend<Microfacets>;
 
 }  // namespace dapple

@@ -4,10 +4,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <optional>
-#include <sstream>
 
 #include <ImathMatrix.h>
 
@@ -77,7 +75,7 @@ std::optional<RgbSpace> FindColorSpace(std::string_view name) {
 }
 
 /// The place of the byte `offset` of a file's text.
-FileLocation PlaceInFile(const std::string& path, const std::string& text, size_t offset) {
+FileLocation PlaceInFile(const std::string& path, std::string_view text, size_t offset) {
   const auto begin = text.begin(), at = begin + static_cast<std::ptrdiff_t>(offset);
   const size_t lineStart = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
   const size_t column = lineStart == std::string::npos ? offset + 1 : offset - lineStart;
@@ -86,7 +84,7 @@ FileLocation PlaceInFile(const std::string& path, const std::string& text, size_
 }
 
 /// All numbers of a text in which # starts a comment.
-std::vector<double> ParseNumbers(const std::string& path, const std::string& text) {
+std::vector<double> ParseNumbers(const std::string& path, std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n\f\v";
   std::vector<double> numbers;
   for (size_t i = 0; (i = text.find_first_not_of(kSpace, i)) != std::string::npos;) {
@@ -100,7 +98,7 @@ std::vector<double> ParseNumbers(const std::string& path, const std::string& tex
     const auto [stop, code] = std::from_chars(text.data() + start, text.data() + end, value);
     if (code != std::errc() || stop != text.data() + end) {
       throw Error(PlaceInFile(path, text, i),
-                  "\"" + text.substr(i, std::min<size_t>(end - i, 40)) + "\" in a spectrum; expected a number");
+                  "\"" + std::string(text.substr(i, std::min<size_t>(end - i, 40))) + "\" in a spectrum; expected a number");
     }
     numbers.push_back(value);
     i = end;
@@ -166,13 +164,8 @@ double Spectrum::operator()(double nm) const {
   return std::lerp(values_[i - 1], values_[i], (nm - wavelengths_[i - 1]) / (wavelengths_[i] - wavelengths_[i - 1]));
 }
 
-Spectrum ReadSpectrum(const std::string& path, Spectrum::Outside outside, const FileLocation& location) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  content << file.rdbuf();
-  const std::string text = content.str();
-  if (!file) throw Error(location, "cannot read the spectrum \"" + path + "\"; expected a text file");
-  return Spectrum::FromPairs(ParseNumbers(path, text), outside, FileLocation(path));
+Spectrum ParseSpectrum(std::string_view text, const std::string& fileName, Spectrum::Outside outside) {
+  return Spectrum::FromPairs(ParseNumbers(fileName, text), outside, FileLocation(fileName));
 }
 
 Xyz ToXyz(const Spectrum& spectrum) { return SumOverObserver(spectrum) * (1 / kCieYIntegral); }

@@ -45,9 +45,9 @@ class Spectrum {
   Outside outside_ = Outside::kConstant;
 };
 
-/// Reads a text file of wavelength-value pairs, with comments from # to the end of the line (pbrt's .spd files).
-/// Throws `Error` at `location` where it cannot be read, at the place in the file where that is no number.
-Spectrum ReadSpectrum(const std::string& path, Spectrum::Outside outside, const FileLocation& location = {});
+/// The spectrum of a text of wavelength-value pairs, with comments from # to the end of the line (pbrt's .spd files).
+/// Throws `Error` at the place in the file, which is named `fileName`.
+Spectrum ParseSpectrum(std::string_view text, const std::string& fileName, Spectrum::Outside outside);
 
 /// Tristimulus values, normalised so that the spectrum that is 1 everywhere has Y = 1 (equal energy).
 Xyz ToXyz(const Spectrum& spectrum);

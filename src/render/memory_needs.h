@@ -22,6 +22,10 @@ struct MemoryNeeds {
   int64_t Sum() const { return film + files + photons + pilots; }
 };
 
+/// Throws `Error` where the picture has more pixels than a file may have, or its film alone takes more than the
+/// `available` bytes.
+void RequireFilm(const RenderSettings& settings, const AovSet& aovs, int64_t available);
+
 /// What a light path leaves of photons is counted on a few thousand paths.
 MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
                            const IntegratorOptions& options, uint64_t seed);

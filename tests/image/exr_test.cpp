@@ -242,6 +242,34 @@ TEST(Exr, HeaderThatLiesAboutItsSize) {
   claim(-2, 3);
 }
 
+// OpenEXR would take the memory that an attribute claims before it reads it, or read on at another place.
+TEST(Exr, AttributesThatLieAboutTheirSize) {
+  const TemporaryFolder folder;
+  WriteExr(folder.Path("a.exr"), MakeRamp(4, 4, {"R", "G", "B"}), {{"note", "some text"}, {"number", 7}});
+  const std::string whole = folder.Read("a.exr");
+  const auto errorWith = [&](const std::string& before, int32_t size) -> std::string {
+    std::string bytes = whole;
+    const size_t place = bytes.find(before) + before.size();
+    EXPECT_LT(place, bytes.size()) << before;
+    std::memcpy(&bytes[place], &size, sizeof(size));
+    try {
+      Decode("lie.exr", bytes);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  using namespace std::string_literals;
+  EXPECT_EQ(errorWith("note\0string\0"s, 9), "no error") << "the true size";
+  EXPECT_EQ(errorWith("note\0string\0"s, 2000000000),
+            "lie.exr: error: cannot read the EXR file: attribute \"note\" does not take the 2000000000 bytes that it "
+            "claims");
+  for (const std::string& attribute : {"number\0int\0"s, "channels\0chlist\0"s, "compression\0compression\0"s,
+                                       "dataWindow\0box2i\0"s, "screenWindowWidth\0float\0"s})
+    for (const int32_t size : {-1, 0, 3, 5, 1000000, 0x7fffffff})
+      EXPECT_NE(errorWith(attribute, size).find("bytes that it claims"), std::string::npos) << attribute << size;
+}
+
 TEST(Exr, ErrorsNameTheFileAndThePlaceInTheScene) {
   const TemporaryFolder folder;
   const std::string path = folder.Write("not.exr", std::string("\x76\x2f\x31\x01 and no more", 17));

@@ -150,6 +150,20 @@ TEST(Png, HeaderThatLiesAboutItsSize) {
   EXPECT_THROW(ReadImage(folder.Write("a.png", Png16(std::string("\0\x01\0\xff\xff", 5), 0x7fffffff))), Error);
 }
 
+// stb_image would take the memory that a chunk claims before it reads it.
+TEST(Png, ChunkThatLiesAboutItsSize) {
+  std::string bytes = Png16(std::string("\0\1\0\xff\xff", 5), 2);
+  const size_t length = bytes.find("IDAT") - 4;
+  for (const uint32_t claim : {1000u, 0x7fffffffu, 0x80000000u, 0xffffffffu})
+    EXPECT_THROW(Decode("lie.png", bytes.replace(length, 4, BigEndian(claim))), Error) << claim;
+}
+
+// A header alone must not cost the time of its pixels.
+TEST(Tga, MorePixelsThanItsBytesCanHold) {
+  EXPECT_THROW(Decode("a.tga", TgaHeader(10, 60, 60, 32) + std::string("\xff\1\2\3\4", 5)), Error);
+  EXPECT_THROW(Decode("a.tga", TgaHeader(2, 1000, 1000, 32)), Error);
+}
+
 TEST(Jpeg, FlatColour) {
   const TemporaryFolder folder;
   const Image image = ReadImage(folder.Write("a.jpeg", Jpeg(20, 200, 100, 50)), ColorEncoding::Linear());

@@ -297,6 +297,16 @@ TEST(PbrtParser, BlocksThatDoNotMatch) {
             "a.pbrt:1:28: error: ObjectInstance within an object, expected ObjectEnd first");
 }
 
+TEST(PbrtParser, BlocksAreNotNestedForEver) {
+  const auto nested = [](int depth) {
+    std::string text = "WorldBegin\n";
+    for (int i = 0; i < depth; ++i) text += "AttributeBegin\n";
+    return text;
+  };
+  EXPECT_EQ(ErrorOf(nested(10000)), "a.pbrt:10001:1: error: AttributeBegin without AttributeEnd");
+  EXPECT_EQ(ErrorOf(nested(5000000)), "a.pbrt:10002:1: error: blocks are more than 10000 deep");
+}
+
 TEST(PbrtParser, OpenBlocksAtTheEnd) {
   EXPECT_EQ(ErrorOf("WorldBegin AttributeBegin\n AttributeBegin AttributeEnd", 4),
             "a.pbrt:1:12: error: AttributeBegin without AttributeEnd");
@@ -459,6 +469,12 @@ TEST(PbrtParser, IncludesThatFail) {
   for (int i = 0; i < 100; ++i)
     folder.Write("deep" + std::to_string(i) + ".pbrt", "Include \"deep" + std::to_string(i + 1) + ".pbrt\"");
   EXPECT_NE(parse("Include \"deep0.pbrt\"").find("error: files are included more than 64 deep"), std::string::npos);
+  for (int i = 0; i < 60; ++i) {
+    const std::string next = "Include \"twice" + std::to_string(i + 1) + ".pbrt\"\n";
+    folder.Write("twice" + std::to_string(i) + ".pbrt", next + next);
+  }
+  folder.Write("twice60.pbrt", "");
+  EXPECT_NE(parse("Include \"twice0.pbrt\"").find("error: more than 100000 files are included"), std::string::npos);
   EXPECT_NE(parse("Include \"" + std::string(5000, 'x') + "\"").find("error: no file"), std::string::npos);
   EXPECT_EQ(parse("Include x"), "a.pbrt:1:9: error: Include: expected a file name in quotes, found \"x\"");
   folder.Write("bad.pbrt", "\n\n   Oops");

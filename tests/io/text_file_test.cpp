@@ -59,6 +59,15 @@ TEST(TextFile, DamagedGzipIsAnError) {
   EXPECT_THROW(ReadTextFile(folder.Write("flipped.gz", flipped)), Error);
 }
 
+TEST(TextFile, AFileMadeToFillTheMemoryIsAnError) {
+  const TestFolder folder;
+  const std::string zeros = Gzip(std::string(std::size_t{40} << 20, ' '));
+  EXPECT_EQ(ReadTextFile(folder.Write("large.gz", zeros)).size(), std::size_t{40} << 20);
+  const auto bomb = folder.Write("bomb.gz", zeros + zeros + zeros + zeros);
+  EXPECT_EQ(MessageOf([&] { ReadTextFile(bomb); }),
+            bomb.string() + ": error: the gzip data inflates to more than 100 times its size");
+}
+
 TEST(TextFile, MissingFilesAreNamedAtThePlaceThatNamesThem) {
   const FileLocation place(std::make_shared<const std::string>("scene.pbrt"), 3, 9);
   EXPECT_EQ(MessageOf([&] { ReadTextFile("/nowhere/at/all.spd", place); }),

@@ -1,0 +1,182 @@
+// Scenes that no one should have written: each is refused with its place, or rendered with a warning; within a bound on
+// time and memory, and without a file that was not asked for.
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "tests/app/program.h"
+
+namespace dapple {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kIsSanitized = true;  // the shadow memory takes terabytes of addresses
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
+/// Half a minute of processor time and 2 GB of addresses; beyond that the program ends by a signal, or says that the
+/// memory does not suffice.
+void Bound() {
+  const rlimit seconds{30, 30}, bytes{rlim_t{2} << 30, rlim_t{2} << 30};
+  setrlimit(RLIMIT_CPU, &seconds);
+  if (!kIsSanitized) setrlimit(RLIMIT_AS, &bytes);
+}
+
+class BadInput : public ProgramTest {
+ protected:
+  /// The error of a render of `scene`; checks that it is one, and that nothing was written.
+  std::string ErrorOf(const std::string& scene) {
+    Write("bad.pbrt", scene);
+    return ErrorOfFile();
+  }
+
+  std::string ErrorOfFile() {
+    const std::vector<std::string> before = Files();
+    const ProgramResult result = Run("bad.pbrt --quiet --passes 1 --threads 2", Bound);
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_EQ(Files(), before);
+    return result.err;
+  }
+
+  /// In a scene that is otherwise whole.
+  std::string WorldError(const std::string& statements) {
+    return ErrorOf(
+        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\nLightSource \"point\"\n" +
+        statements);
+  }
+};
+
+TEST_F(BadInput, IncludesThatNeverEnd) {
+  Write("a.pbrt", "Include \"bad.pbrt\"");
+  EXPECT_TRUE(BeginsWith(ErrorOf("Include \"a.pbrt\""), "a.pbrt:1:1: error: bad.pbrt includes itself"));
+  for (int i = 0; i < 100; ++i)
+    Write("deep" + std::to_string(i) + ".pbrt", "Include \"deep" + std::to_string(i + 1) + ".pbrt\"");
+  EXPECT_TRUE(
+      BeginsWith(ErrorOf("Include \"deep0.pbrt\""), "deep62.pbrt:1:1: error: files are included more than 64 deep"));
+}
+
+TEST_F(BadInput, HundredMegabytesOfBrackets) {
+  const std::string brackets(100'000'000, '[');
+  EXPECT_TRUE(BeginsWith(ErrorOf(brackets), "bad.pbrt:1:1: error: expected a directive, found "));
+  EXPECT_TRUE(
+      BeginsWith(ErrorOf("WorldBegin Shape \"sphere\" \"float radius\" " + brackets), "bad.pbrt:1:43: error: "));
+  EXPECT_TRUE(BeginsWith(ErrorOf("WorldBegin Shape \"sphere\" \"" + brackets), "bad.pbrt:1:27: error: "));
+}
+
+TEST_F(BadInput, HundredMegabytesOfBlocks) {
+  std::string blocks = "WorldBegin\n";
+  while (blocks.size() < 100'000'000) blocks += "AttributeBegin\n";
+  EXPECT_TRUE(BeginsWith(ErrorOf(blocks), "bad.pbrt:10002:1: error: blocks are more than 10000 deep"));
+}
+
+TEST_F(BadInput, NumbersThatAreNone) {
+  for (const char* number : {"1e999", "-1e999", "nan", "inf", "-inf", "1e", "0x10", "1.2.3", "--1"}) {
+    EXPECT_TRUE(BeginsWith(WorldError("Shape \"sphere\" \"float radius\" [ " + std::string(number) + " ]"),
+                           "bad.pbrt:4:33: error: "))
+        << number;
+    EXPECT_TRUE(BeginsWith(WorldError("Translate 0 0 " + std::string(number)), "bad.pbrt:4:15: error: ")) << number;
+  }
+  // Finite as written, but beyond what the renderer counts with.
+  EXPECT_TRUE(BeginsWith(WorldError("Shape \"sphere\" \"float radius\" 1e300"), "bad.pbrt:4:1: error: "));
+  EXPECT_TRUE(BeginsWith(WorldError("Scale 1e200 1 1 Scale 1e200 1 1"), "bad.pbrt:4:17: error: "));
+}
+
+TEST_F(BadInput, IndicesOutOfRange) {
+  for (const char* index : {"3", "-1", "2147483647", "-2147483648"}) {
+    EXPECT_TRUE(BeginsWith(WorldError("Shape \"trianglemesh\" \"integer indices\" [0 1 " + std::string(index) +
+                                      "] \"point P\" [0 0 0 1 0 0 0 1 0]"),
+                           "bad.pbrt:4:22: error: index " + std::string(index)));
+    Write("a.ply",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 " +
+              std::string(index) + "\n");
+    EXPECT_TRUE(BeginsWith(WorldError("Shape \"plymesh\" \"string filename\" \"a.ply\""), "a.ply:13:7: error: face 0"));
+  }
+  EXPECT_TRUE(BeginsWith(WorldError("Shape \"trianglemesh\" \"integer indices\" [0 1 2147483648] \"point P\" [0 0 0]"),
+                         "bad.pbrt:4:"));
+}
+
+TEST_F(BadInput, ImagesOfNoPixelAndOfTooMany) {
+  using namespace std::string_literals;
+  const auto error = [&](const std::string& name, const std::string& bytes) {
+    Write(name, bytes);
+    return WorldError("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + name +
+                      "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"");
+  };
+  const std::string place = "bad.pbrt:4:35: error: image file \"";
+  for (const std::string& size : {"0 0"s, "0 4"s, "-1 4"s, "2147483648 1"s, "65536 65536"s, "1e9 1"s, "nan 1"s})
+    EXPECT_TRUE(BeginsWith(error("a.pfm", "PF\n" + size + "\n-1\n" + std::string(64, '\0')), place + "a.pfm\""))
+        << size;
+  for (const std::string& size : {"-Y 0 +X 0"s, "-Y -4 +X 4"s, "-Y 65536 +X 65536"s, "-Y 2147483648 +X 1"s})
+    EXPECT_TRUE(BeginsWith(error("a.hdr", "#?RADIANCE\n\n" + size + "\n" + std::string(64, '\1')), place + "a.hdr\""))
+        << size;
+  const auto png = [](const std::string& width, const std::string& height) {
+    return "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"s + width + height + "\x08\2\0\0\0\0\0\0\0\0\0\0\0IEND\0\0\0\0"s;
+  };
+  const std::string none("\0\0\0\0", 4), one("\0\0\0\1", 4), many("\0\1\0\0", 4), most("\x7f\xff\xff\xff", 4);
+  for (const std::string& bytes : {png(none, one), png(one, none), png(many, many), png(most, most)})
+    EXPECT_TRUE(BeginsWith(error("a.png", bytes), place + "a.png\""));
+}
+
+TEST_F(BadInput, ResolutionsOfNothingAndOfTooMuch) {
+  const auto error = [&](const std::string& x, const std::string& y) {
+    return ErrorOf("Film \"rgb\" \"integer xresolution\" " + x + " \"integer yresolution\" " + y +
+                   "\nWorldBegin LightSource \"point\" Shape \"sphere\"");
+  };
+  for (const char* size : {"0", "-1", "65537", "2147483647", "2147483648", "4294967296", "1e30", "1.5"}) {
+    EXPECT_TRUE(BeginsWith(error(size, "4"), "bad.pbrt:1:")) << size;
+    EXPECT_TRUE(BeginsWith(error("4", size), "bad.pbrt:1:")) << size;
+  }
+  EXPECT_TRUE(BeginsWith(error("65536", "65536"),
+                         "error: a picture of 65536 x 65536 pixels, expected at most 268435456 in all"));
+}
+
+TEST_F(BadInput, AGzipFileThatFillsTheMemory) {
+  // Made of 1,032 zeros a byte; 128 MB of them.
+  ASSERT_EQ(std::system(("head -c 134217728 /dev/zero | gzip > '" + Path("a.pbrt.gz") + "'").c_str()), 0);
+  EXPECT_TRUE(BeginsWith(ErrorOf("Include \"a.pbrt.gz\""), "a.pbrt.gz: error: the gzip data inflates to more than "));
+}
+
+TEST_F(BadInput, WhatIsNoFileIsNotRead) {
+  for (const char* name : {"/dev/zero", "/dev/stdin", "/", "."}) {
+    const std::string file = std::string(" \"") + name + "\"";
+    EXPECT_TRUE(BeginsWith(WorldError("Include" + file), "bad.pbrt:4:1: error: "));
+    EXPECT_TRUE(BeginsWith(WorldError("Shape \"plymesh\" \"string filename\"" + file), "bad.pbrt:4:17: error: "));
+    EXPECT_TRUE(
+        BeginsWith(WorldError("LightSource \"infinite\" \"string filename\"" + file), "bad.pbrt:4:24: error: "));
+    EXPECT_TRUE(BeginsWith(WorldError("Material \"conductor\" \"spectrum eta\"" + file + "\nShape \"sphere\""),
+                           "bad.pbrt:4:22: error: "));
+  }
+}
+
+// The name that a scene gives its picture is not a way out of the folder.
+TEST_F(BadInput, NothingIsWrittenOutsideTheFolder) {
+  namespace fs = std::filesystem;
+  fs::create_directories(Path("outside/folder"));
+  fs::create_directories(Path("inside"));
+  for (const std::string& name :
+       {Path("outside/evil.exr"), Path("outside/folder"), Path("evil"), std::string("../outside/evil.exr"),
+        std::string("../evil.png"), std::string(".."), std::string("../outside/folder/."), std::string("/"),
+        std::string("\\\\..\\\\evil")}) {
+    Write("inside/a.pbrt", "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 \"string filename\" \"" +
+                               name + "\"\nWorldBegin LightSource \"point\" Shape \"sphere\"");
+    const std::string command = "cd '" + Path("inside") +
+                                "' && '" DAPPLE_PROGRAM
+                                "' a.pbrt --quiet --passes 2 --checkpoint 0.0001 --snapshots 1 --stats s.json";
+    EXPECT_EQ(std::system(command.c_str()), 0) << name;
+    size_t written = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(Path(""))) {
+      if (!entry.is_regular_file()) continue;
+      EXPECT_EQ(entry.path().parent_path().filename(), "inside") << name << " led to " << entry.path();
+      ++written;
+    }
+    EXPECT_GE(written, 5u) << "scene, picture, checkpoint, snapshot and statistics";
+  }
+}
+
+}  // namespace
+}  // namespace dapple
