@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include "src/image/image_io.h"
+#include "src/io/build_context.h"
 #include "src/io/pbrt_parser.h"
 #include "src/io/scene_hash.h"
 
@@ -269,7 +271,9 @@ void SceneOptions::AddFixedTo(CLI::App* command) {
   AddAlgorithmGroup(command, this);
 }
 
-LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
+namespace {
+
+LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics) {
   SceneDescription description = ParsePbrtFile(options.scene, {.pbrtVersion = options.pbrtVersion}, diagnostics);
   if (!options.strategy.empty()) SetStrategy(options, &description);
   BuildOptions build;
@@ -277,6 +281,18 @@ LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
   build.cropWindow = options.crop;
   return {description.version, description.versionReason, HashSceneContent(description),
           BuildScene(description, build, diagnostics)};
+}
+
+}  // namespace
+
+// What libraries complain of has no place of its own.
+LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
+  const FileLocation scene(options.scene);
+  try {
+    return AtLocation(scene, [&] { return LoadUnchecked(options, diagnostics); });
+  } catch (const std::bad_alloc&) {
+    throw Error(scene, "the memory does not suffice for the scene");
+  }
 }
 
 RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics) {

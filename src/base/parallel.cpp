@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(DAPPLE_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -15,22 +15,33 @@ namespace dapple {
 
 namespace {
 
-/// Tells the thread sanitizer what TBB, whose code it does not see, takes care of: what was written before a loop is
-/// seen in its bodies, and what these write is seen behind it. Without a thread sanitizer it is nothing.
+/// Tells the thread sanitizer what TBB takes care of, whose code it does not see (nor this file's, where TBB's
+/// templates become code: see CMakeLists.txt): what was written before a loop is seen in its bodies, and what these
+/// write is seen behind it, also where one of them throws. Without a thread sanitizer it is nothing.
 class LoopOrder {
  public:
-#if defined(__SANITIZE_THREAD__)
+#if defined(DAPPLE_THREAD_SANITIZER)
   LoopOrder() { __tsan_release(&begin_); }
-  void BeginBody() { __tsan_acquire(&begin_); }
-  void EndBody() { __tsan_release(&end_); }
-  void Join() { __tsan_acquire(&end_); }
+  ~LoopOrder() { __tsan_acquire(&end_); }
+#endif
 
+  /// Lives as long as a body runs.
+  class Body {
+   public:
+#if defined(DAPPLE_THREAD_SANITIZER)
+    explicit Body(LoopOrder& loop) : loop_(loop) { __tsan_acquire(&loop.begin_); }
+    ~Body() { __tsan_release(&loop_.end_); }
+
+   private:
+    LoopOrder& loop_;
+#else
+    explicit Body(LoopOrder&) {}
+#endif
+  };
+
+#if defined(DAPPLE_THREAD_SANITIZER)
  private:
   char begin_ = 0, end_ = 0;
-#else
-  void BeginBody() {}
-  void EndBody() {}
-  void Join() {}
 #endif
 };
 
@@ -43,13 +54,11 @@ void ParallelForChunks(int64_t count, int64_t chunkSize, const std::function<voi
     tbb::parallel_for(
         tbb::blocked_range<int64_t>(0, chunks, 1),
         [&](const tbb::blocked_range<int64_t>& range) {
-          order.BeginBody();
+          [[maybe_unused]] const LoopOrder::Body running(order);
           for (int64_t chunk = range.begin(); chunk != range.end(); ++chunk)
             body(chunk * chunkSize, std::min(count, (chunk + 1) * chunkSize));
-          order.EndBody();
         },
         tbb::simple_partitioner());
-    order.Join();
   };
   // TBB's own arena has one place a processor; where more threads are asked for, the loop needs a larger one.
   if (ThreadCount() <= tbb::this_task_arena::max_concurrency()) return loop();

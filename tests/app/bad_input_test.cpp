@@ -153,6 +153,28 @@ TEST_F(BadInput, WhatIsNoFileIsNotRead) {
   }
 }
 
+// A mesh of a quarter million triangles, with memory that runs out in the reader, when Embree starts and while it builds.
+TEST_F(BadInput, ASceneThatTheMemoryDoesNotHold) {
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers' own memory cannot be bounded";
+  Write("a.pbrt",
+        "WorldBegin LightSource \"point\" Shape \"loopsubdiv\" \"integer levels\" 8\n"
+        "\"integer indices\" [0 1 2 0 3 1 0 2 3 1 3 2] \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1]");
+  int errorsOfEmbree = 0;
+  for (rlim_t megabytes = 100; megabytes < 2000; megabytes += 50) {
+    const ProgramResult result = Run("info a.pbrt --threads 2", [megabytes] {
+      const rlimit bytes{megabytes << 20, megabytes << 20};
+      setrlimit(RLIMIT_AS, &bytes);
+    });
+    if (result.exitCode == 0) break;
+    EXPECT_EQ(result.exitCode, 1) << megabytes << " MB: " << result.err;
+    const bool isOfEmbree = result.err.starts_with("a.pbrt: error: Embree ");
+    EXPECT_TRUE(isOfEmbree || result.err == "a.pbrt: error: the memory does not suffice for the scene\n")
+        << megabytes << " MB: " << result.err;
+    errorsOfEmbree += isOfEmbree ? 1 : 0;
+  }
+  EXPECT_GE(errorsOfEmbree, 1);
+}
+
 // The name that a scene gives its picture is not a way out of the folder.
 TEST_F(BadInput, NothingIsWrittenOutsideTheFolder) {
   namespace fs = std::filesystem;
