@@ -24,7 +24,8 @@
 namespace dapple {
 namespace {
 
-const std::string kStrategies[] = {"uniform", "cosine", "importance", "compensated", "structured", "product"};
+const std::string kStrategies[] = {"uniform",     "cosine",     "importance", "irradiance",
+                                   "compensated", "structured", "product"};
 
 std::unique_ptr<Scene> SceneWith(const std::string& file, const std::string& sampling, int samples) {
   Diagnostics diagnostics([](const std::string& line) { fmt::print(stderr, "{}\n", line); });

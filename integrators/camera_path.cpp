@@ -27,11 +27,21 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
 
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, const LastScattering& last,
                    PassStats& stats, const DirectLighting& direct) {
-  return EmittedAlong(scene, ray, hit, stats, [&](int index) -> double {
-    if (last.isSpecular || direct.technique == DirectTechnique::Bsdf) return 1;
-    if (direct.technique == DirectTechnique::Light) return 0;
-    return PowerHeuristic(last.pdf, LightPdf(scene, last.at, index, ray.d, hit, direct));
-  });
+  if (last.isSpecular || direct.technique == DirectTechnique::Bsdf)
+    return EmittedAlong(scene, ray, hit, stats, [](int) { return 1; });
+  if (direct.technique == DirectTechnique::Light) return Color();
+  if (hit)
+    return EmittedAlong(scene, ray, hit, stats, [&](int index) {
+      return PowerHeuristic(last.pdf, LightPdf(scene, last.at, index, ray.d, hit, direct));
+    });
+  Color sum;
+  for (int index : scene.InfiniteLights()) {
+    const RadianceWithPdf value = scene.Lights()[static_cast<size_t>(index)]->LeWithPdf(last.at, ray);
+    sum += WeightedEmission(index, value.L, stats, [&] {
+      return PowerHeuristic(last.pdf, LightPdf(scene, last.at, index, value.pdf, direct));
+    });
+  }
+  return sum;
 }
 
 std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, double uLobe,
@@ -45,8 +55,12 @@ std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteracti
 double LightPdf(const Scene& scene, const LightContext& at, int index, const Vec3& wi, const SurfaceInteraction* hit,
                 const DirectLighting& direct) {
   const Light& light = *scene.Lights()[static_cast<size_t>(index)];
-  return direct.SamplesOf(light) * scene.Picker().ProbabilityFor(at, index) *
-         (light.IsDelta() ? 1 : light.Pdf_Li(at, wi, hit));
+  return LightPdf(scene, at, index, light.IsDelta() ? 1 : light.Pdf_Li(at, wi, hit), direct);
+}
+
+double LightPdf(const Scene& scene, const LightContext& at, int index, double pdf, const DirectLighting& direct) {
+  const Light& light = *scene.Lights()[static_cast<size_t>(index)];
+  return direct.SamplesOf(light) * scene.Picker().ProbabilityFor(at, index) * pdf;
 }
 
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,

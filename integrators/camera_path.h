@@ -56,6 +56,9 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
 double LightPdf(const Scene& scene, const LightContext& at, int light, const Vec3& wi, const SurfaceInteraction* hit,
                 const DirectLighting& direct);
 
+/// The same where one sample of the light has the density `pdf`.
+double LightPdf(const Scene& scene, const LightContext& at, int light, double pdf, const DirectLighting& direct);
+
 /// Where light is asked for, as lights see it: for both of the above.
 LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
                        const DirectLighting& direct = {});
@@ -65,12 +68,18 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
 /// the medium (pbrt-v4, section 14.5.4).
 bool SurvivesRoulette(int scattered, double u, float etaScale, Color* throughput);
 
+/// What a path runs into of a light, times `weight()`.
+template <typename Weight>
+Color WeightedEmission(int light, const Color& radiance, PassStats& stats, Weight&& weight) {
+  if (radiance.IsBlack()) return radiance;
+  return Finite(radiance * static_cast<float>(weight()), &stats.nonFinite,
+                [&] { return radiance.IsFinite() ? NonFiniteSource::Integrator() : NonFiniteSource::Light(light); });
+}
+
 template <typename Weigh>
 Color EmittedAlong(const Scene& scene, const Ray& ray, const SurfaceInteraction* hit, PassStats& stats, Weigh&& weigh) {
   const auto weighted = [&](int light, const Color& radiance) {
-    if (radiance.IsBlack()) return radiance;
-    return Finite(radiance * static_cast<float>(weigh(light)), &stats.nonFinite,
-                  [&] { return radiance.IsFinite() ? NonFiniteSource::Integrator() : NonFiniteSource::Light(light); });
+    return WeightedEmission(light, radiance, stats, [&] { return weigh(light); });
   };
   Color sum;
   if (hit) {

@@ -1,5 +1,7 @@
 #include "integrators/select.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "integrators/photon_shooting.h"
@@ -55,13 +57,18 @@ IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& o
   return {"hybrid", finding, guided.guide};
 }
 
+bool IsLeftToDapple(std::string_view requested, std::string_view fromScene) {
+  if (!requested.empty()) return requested == "auto";
+  const std::vector<std::string_view> known = IntegratorNames();
+  return std::find(known.begin(), known.end(), fromScene) == known.end();
+}
+
 IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, const IntegratorOptions& options,
                                    uint64_t seed) {
-  if (!requested.empty() && requested != "auto") return {std::string(requested), "asked for", nullptr};
   const std::string& fromScene = scene.Settings().integrator;
-  for (std::string_view known : IntegratorNames())
-    if (requested.empty() && fromScene == known) return {fromScene, "the scene asks for it", nullptr};
-  return SelectIntegrator(scene, options, seed);
+  if (IsLeftToDapple(requested, fromScene)) return SelectIntegrator(scene, options, seed);
+  if (requested.empty()) return {fromScene, "the scene asks for it", nullptr};
+  return {std::string(requested), "asked for", nullptr};
 }
 
 }  // namespace dapple

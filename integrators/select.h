@@ -20,6 +20,10 @@ struct IntegratorChoice {
 /// which joins all, gives way to "sppm". Depends on scene, options and seed alone.
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
 
+/// True where neither the user (empty or "auto") nor the scene's file (empty, or a name that Dapple does not have)
+/// names an algorithm: then `SelectIntegrator` does.
+bool IsLeftToDapple(std::string_view requested, std::string_view fromScene);
+
 /// The user's name, else the scene's where Dapple has it, else `SelectIntegrator`. `requested` may be empty or "auto".
 IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, const IntegratorOptions& options,
                                    uint64_t seed);

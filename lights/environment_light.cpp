@@ -29,18 +29,22 @@ std::optional<LiSample> EnvironmentLight::Sample_Li(const LightContext& at, cons
   if (map_.IsBlack()) return std::nullopt;
   LiSample sample;
   sample.wi = strategy_ ? strategy_->Sample(at, u) : ToRender(map_.Sample(u.direction));
-  const EnvironmentValue value = map_.Evaluate(ToMap(sample.wi));
-  sample.pdf = strategy_ ? strategy_->Pdf(at, sample.wi) : value.pdf;
-  if (sample.pdf == 0) return std::nullopt;
+  const RadianceWithPdf value = Toward(at, sample.wi);
+  if (value.pdf == 0) return std::nullopt;
   sample.L = value.L;
+  sample.pdf = value.pdf;
   sample.p = PointOutside(extent_, at.p, sample.wi);
   sample.isDistant = true;
   return sample;
 }
 
 double EnvironmentLight::Pdf_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
-  if (strategy_) return strategy_->Pdf(at, wi);
-  return map_.Evaluate(ToMap(wi)).pdf;
+  return Toward(at, wi).pdf;
+}
+
+RadianceWithPdf EnvironmentLight::Toward(const LightContext& at, const Vec3& wi) const {
+  const EnvironmentPlace place = map_.PlaceOf(ToMap(wi));
+  return {map_.RadianceAt(place), strategy_ ? strategy_->Pdf(at, wi, place) : map_.DensityAt(map_.Density(), place)};
 }
 
 LiRandom EnvironmentLight::Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction*) const {
@@ -50,7 +54,7 @@ LiRandom EnvironmentLight::Invert_Li(const LightContext& at, const Vec3& wi, con
   return u;
 }
 
-double EnvironmentLight::EmissionPdf(const EnvironmentValue& value) const {
+double EnvironmentLight::EmissionPdf(const RadianceWithPdf& value) const {
   return options_.emission == EnvironmentEmission::Uniform ? kSpherePdf : value.pdf;
 }
 
@@ -58,7 +62,7 @@ std::optional<LeSample> EnvironmentLight::Sample_Le(const LeRandom& u) const {
   if (map_.IsBlack()) return std::nullopt;
   const bool isUniform = options_.emission == EnvironmentEmission::Uniform;
   const Vec3 wi = ToRender(isUniform ? SampleSphere(u.direction) : map_.Sample(u.direction));
-  const EnvironmentValue value = map_.Evaluate(ToMap(wi));
+  const RadianceWithPdf value = map_.Evaluate(ToMap(wi));
   const double pdf = EmissionPdf(value);
   if (pdf == 0 || value.L.IsBlack()) return std::nullopt;
   const EmissionDisk disk = disks_.Toward(wi);

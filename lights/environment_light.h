@@ -53,6 +53,7 @@ class EnvironmentLight final : public Light {
   LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
 
   Color Le(const Ray& ray) const override;
+  RadianceWithPdf LeWithPdf(const LightContext& at, const Ray& ray) const override { return Toward(at, ray.d); }
 
   TableUse Tables() const override {
     return map_.Tables() + disks_.Table() + (strategy_ ? strategy_->Tables() : TableUse());
@@ -69,8 +70,10 @@ class EnvironmentLight final : public Light {
  private:
   Vec3 ToRender(const Vec3d& w) const { return frame_.ToRender(w); }
   Vec3d ToMap(const Vec3& w) const { return frame_.ToLight(w); }
+  /// What comes from `wi`, with the density of `Sample_Li`.
+  RadianceWithPdf Toward(const LightContext& at, const Vec3& wi) const;
   /// The density of emitted directions where the map has `value`.
-  double EmissionPdf(const EnvironmentValue& value) const;
+  double EmissionPdf(const RadianceWithPdf& value) const;
 
   EnvironmentMap map_;
   EnvironmentOptions options_;

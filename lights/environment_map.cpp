@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "lights/equal_area_mapping.h"
 #include "lights/light_math.h"
@@ -38,6 +40,14 @@ Vec2i Wrapped(EnvironmentMapping mapping, int x, int y, int width, int height) {
   return {x, y};
 }
 
+/// The cell that holds `x` texels from the edge of a row of `size`, and the place within it: the first and last cell
+/// are half as wide.
+std::pair<int, double> CellAt(double x, int size) {
+  const int cell = std::clamp(static_cast<int>(x + 0.5), 0, size);
+  const double t = cell == 0 ? 2 * x : (cell == size ? 2 * (x - size) + 1 : x + 0.5 - cell);
+  return {cell, std::clamp(t, 0.0, 1.0)};
+}
+
 /// (1 - cos theta) / 2 of a unit vector, without cancellation near +z.
 double HaversineOf(const Vec3d& w) { return w.z > 0 ? (w.x * w.x + w.y * w.y) / (2 * (1 + w.z)) : (1 - w.z) / 2; }
 
@@ -45,7 +55,7 @@ double HaversineOf(const Vec3d& w) { return w.z > 0 ? (w.x * w.x + w.y * w.y) / 
 
 Vec2d EnvironmentSquareAt(EnvironmentMapping mapping, const Vec3d& w) {
   if (mapping == EnvironmentMapping::EqualArea) return EqualAreaSphereToSquare(w);
-  return {TurnOf(w.x, w.y), std::atan2(std::hypot(w.x, w.y), w.z) / kPiD};
+  return {TurnOf(w.x, w.y), Atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z) / kPiD};
 }
 
 Vec3d EnvironmentDirectionAt(EnvironmentMapping mapping, const Vec2d& p) {
@@ -268,14 +278,11 @@ double EnvironmentMap::LatticeX(int i) const { return i == 0 ? 0 : (i > width_ ?
 double EnvironmentMap::LatticeY(int j) const { return j == 0 ? 0 : (j > height_ ? 1 : (j - 0.5) / height_); }
 
 EnvironmentPlace EnvironmentMap::PlaceOf(const Vec3d& w) const {
-  const Vec3d unit = Normalize(w);
+  const Vec3d unit = w * (1 / std::sqrt(Dot(w, w)));
   const Vec2d p = EnvironmentSquareAt(mapping_, unit);
   EnvironmentPlace place;
-  place.cell = Vec2i(std::clamp(static_cast<int>(p.x * width_ + 0.5), 0, width_),
-                     std::clamp(static_cast<int>(p.y * height_ + 0.5), 0, height_));
-  const double x0 = LatticeX(place.cell.x), y0 = LatticeY(place.cell.y);
-  place.t = Vec2d(std::clamp((p.x - x0) / (LatticeX(place.cell.x + 1) - x0), 0.0, 1.0),
-                  std::clamp((p.y - y0) / (LatticeY(place.cell.y + 1) - y0), 0.0, 1.0));
+  std::tie(place.cell.x, place.t.x) = CellAt(p.x * width_, width_);
+  std::tie(place.cell.y, place.t.y) = CellAt(p.y * height_, height_);
   place.s = place.t;
   if (mapping_ == EnvironmentMapping::LatLong) {
     const size_t j = static_cast<size_t>(place.cell.y);
@@ -296,19 +303,14 @@ Vec3d EnvironmentMap::DirectionOf(const Vec2i& cell, const Vec2d& s) const {
   return {sinTheta * std::cos(phi), sinTheta * std::sin(phi), 1 - 2 * haversine};
 }
 
-Color EnvironmentMap::Radiance(const Vec3d& w) const {
-  const EnvironmentPlace place = PlaceOf(w);
+Color EnvironmentMap::RadianceAt(const EnvironmentPlace& place) const {
   const Vec2i& c = place.cell;
   return Bilinear({Corner(c.x, c.y), Corner(c.x + 1, c.y), Corner(c.x, c.y + 1), Corner(c.x + 1, c.y + 1)}, place.t);
 }
 
-EnvironmentValue EnvironmentMap::Evaluate(const Vec3d& w) const {
+RadianceWithPdf EnvironmentMap::Evaluate(const Vec3d& w) const {
   const EnvironmentPlace place = PlaceOf(w);
-  const Vec2i& c = place.cell;
-  EnvironmentValue value;
-  value.L = Bilinear({Corner(c.x, c.y), Corner(c.x + 1, c.y), Corner(c.x, c.y + 1), Corner(c.x + 1, c.y + 1)}, place.t);
-  value.pdf = DensityAt(base_, place);
-  return value;
+  return {RadianceAt(place), DensityAt(base_, place)};
 }
 
 Vec3d EnvironmentMap::Sample(const Vec2d& u) const { return Sample(base_, u); }
@@ -318,10 +320,6 @@ Vec2d EnvironmentMap::Invert(const Vec3d& w) const { return Invert(base_, w); }
 Vec3d EnvironmentMap::Sample(const EnvironmentDensity& density, const Vec2d& u) const {
   const DiscreteSample2D drawn = density.table.SampleDiscrete(u);
   return DirectionOf(drawn.cell, SampleInCell(drawn.cell, drawn.u, density.threshold));
-}
-
-double EnvironmentMap::Pdf(const EnvironmentDensity& density, const Vec3d& w) const {
-  return DensityAt(density, PlaceOf(w));
 }
 
 double EnvironmentMap::DensityAt(const EnvironmentDensity& density, const EnvironmentPlace& place) const {

@@ -19,6 +19,7 @@
 #include <functional>
 #include <vector>
 
+#include "lights/light.h"
 #include "src/base/color.h"
 #include "src/image/image.h"
 #include "src/sampling/distribution.h"
@@ -37,12 +38,6 @@ enum class EnvironmentMapping {
 /// Where the image shows the unit direction `w`, in [0, 1]^2 from its upper left corner; and the direction shown there.
 Vec2d EnvironmentSquareAt(EnvironmentMapping mapping, const Vec3d& w);
 Vec3d EnvironmentDirectionAt(EnvironmentMapping mapping, const Vec2d& p);
-
-/// Radiance from a direction with the density at which that direction is drawn.
-struct EnvironmentValue {
-  Color L;
-  double pdf = 0;  ///< per solid angle
-};
 
 /// A density of directions over the cells of a map, bilinear in each: as importance at the corners of the cells, less
 /// `threshold`, and 0 where that is negative.
@@ -71,9 +66,10 @@ class EnvironmentMap {
   /// No radiance anywhere: nothing can be drawn.
   bool IsBlack() const { return base_.table.IsZero(); }
   /// `w` of any length but zero.
-  Color Radiance(const Vec3d& w) const;
+  Color Radiance(const Vec3d& w) const { return RadianceAt(PlaceOf(w)); }
+  Color RadianceAt(const EnvironmentPlace& place) const;
   /// Radiance and density in one lookup.
-  EnvironmentValue Evaluate(const Vec3d& w) const;
+  RadianceWithPdf Evaluate(const Vec3d& w) const;
   /// A unit direction; its density is `Evaluate`'s. The map must not be black.
   Vec3d Sample(const Vec2d& u) const;
   /// The random numbers with which `Sample` gives the direction `w`, of any length but zero. The map must not be black.
@@ -105,9 +101,9 @@ class EnvironmentMap {
   const EnvironmentDensity& Density() const { return base_; }
   /// Of a table that is zero nothing can be drawn.
   EnvironmentDensity MakeDensity(double threshold) const;
-  /// A unit direction; its density per solid angle is `Pdf`'s.
+  /// A unit direction; its density per solid angle is `DensityAt`'s.
   Vec3d Sample(const EnvironmentDensity& density, const Vec2d& u) const;
-  double Pdf(const EnvironmentDensity& density, const Vec3d& w) const;
+  double DensityAt(const EnvironmentDensity& density, const EnvironmentPlace& place) const;
   Vec2d Invert(const EnvironmentDensity& density, const Vec3d& w) const;
 
   // Within a cell: bilinear between the importance at its corners less a threshold.
@@ -120,7 +116,6 @@ class EnvironmentMap {
   void FillLattice(const Image& image, const Color& scale);
   void FillHaversines();
   Color IntegrateRadiance() const;
-  double DensityAt(const EnvironmentDensity& density, const EnvironmentPlace& place) const;
   /// The integrals over the strip `low` < v < `high` of the two functions that are linear in v, 1 at one border and 0
   /// at the other; and over the cells of row y.
   Vec2d StripIntegrals(double low, double high) const;

@@ -1,5 +1,6 @@
 #include "lights/environment_strategy.h"
 
+#include "lights/irradiance_strategy.h"
 #include "lights/light_math.h"
 #include "lights/product_strategy.h"
 #include "lights/structured_strategy.h"
@@ -13,7 +14,7 @@ namespace {
 class UniformStrategy final : public EnvironmentStrategy {
  public:
   Vec3 Sample(const LightContext&, const LiRandom& u) const override { return ToFloat(SampleSphere(u.direction)); }
-  double Pdf(const LightContext&, const Vec3&) const override { return kSpherePdf; }
+  double Pdf(const LightContext&, const Vec3&, const EnvironmentPlace&) const override { return kSpherePdf; }
   LiRandom Invert(const LightContext&, const Vec3& wi) const override {
     LiRandom u;
     u.direction = InvertSphere(ToDouble(wi));
@@ -35,7 +36,7 @@ class CosineStrategy final : public EnvironmentStrategy {
     return Normalize(Frame::FromZ(at.n).ToWorld(local));
   }
 
-  double Pdf(const LightContext& at, const Vec3& wi) const override {
+  double Pdf(const LightContext& at, const Vec3& wi, const EnvironmentPlace&) const override {
     if (!HasSurface(at)) return kSpherePdf;
     const double cosTheta = Dot(ToDouble(at.n), ToDouble(wi));
     return at.transmissive ? CosineHemispherePdf(std::abs(cosTheta)) / 2 : CosineHemispherePdf(cosTheta);
@@ -68,14 +69,14 @@ class CompensatedStrategy final : public EnvironmentStrategy {
       : space_(space), compensated_(space.map.MakeDensity(Threshold(space))) {}
 
   Vec3 Sample(const LightContext& at, const LiRandom& u) const override {
-    return space_.frame.ToRender(space_.map.Sample(DensityAt(at), u.direction));
+    return space_.frame.ToRender(space_.map.Sample(DensityFor(at), u.direction));
   }
-  double Pdf(const LightContext& at, const Vec3& wi) const override {
-    return space_.map.Pdf(DensityAt(at), space_.frame.ToLight(wi));
+  double Pdf(const LightContext& at, const Vec3&, const EnvironmentPlace& place) const override {
+    return space_.map.DensityAt(DensityFor(at), place);
   }
   LiRandom Invert(const LightContext& at, const Vec3& wi) const override {
     LiRandom u;
-    u.direction = space_.map.Invert(DensityAt(at), space_.frame.ToLight(wi));
+    u.direction = space_.map.Invert(DensityFor(at), space_.frame.ToLight(wi));
     return u;
   }
   TableUse Tables() const override { return TableUse::Of(compensated_.table.MemoryBytes()); }
@@ -86,7 +87,7 @@ class CompensatedStrategy final : public EnvironmentStrategy {
     return 2 * bsdfShare * space.map.MeanImportance();
   }
 
-  const EnvironmentDensity& DensityAt(const LightContext& at) const {
+  const EnvironmentDensity& DensityFor(const LightContext& at) const {
     return at.bsdfDrawsToo && !compensated_.table.IsZero() ? compensated_ : space_.map.Density();
   }
 
@@ -104,6 +105,8 @@ std::unique_ptr<EnvironmentStrategy> MakeStrategy(EnvironmentSampling sampling, 
       return std::make_unique<CosineStrategy>();
     case EnvironmentSampling::Importance:
       return nullptr;
+    case EnvironmentSampling::Irradiance:
+      return std::make_unique<IrradianceStrategy>(space);
     case EnvironmentSampling::Compensated:
       return std::make_unique<CompensatedStrategy>(space);
     case EnvironmentSampling::Structured:

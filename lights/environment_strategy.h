@@ -4,6 +4,7 @@
 //   "uniform"      evenly over the sphere
 //   "cosine"       by the cosine at the receiver: its upper hemisphere, or both where light passes through
 //   "importance"   by radiance, from the map's own table, which emission uses too; the default
+//   "irradiance"   by radiance times the cosine at the receiver
 //   "compensated"  by radiance less its mean, where positive: what BSDF sampling finds well is left to it
 //   "structured"   by strata of radiance and solid angle, so that dim wide parts get more than their share
 //   "product"      by radiance times what the receiver scatters of it
@@ -18,7 +19,7 @@
 
 namespace dapple {
 
-enum class EnvironmentSampling { Uniform, Cosine, Importance, Compensated, Structured, Product };
+enum class EnvironmentSampling { Uniform, Cosine, Importance, Irradiance, Compensated, Structured, Product };
 
 /// Directions are unit vectors in render space; densities are per solid angle.
 class EnvironmentStrategy {
@@ -27,7 +28,8 @@ class EnvironmentStrategy {
 
   /// A direction; its density, as it is rounded, is `Pdf`'s.
   virtual Vec3 Sample(const LightContext& at, const LiRandom& u) const = 0;
-  virtual double Pdf(const LightContext& at, const Vec3& wi) const = 0;
+  /// `place` is that of `wi` in the map.
+  virtual double Pdf(const LightContext& at, const Vec3& wi, const EnvironmentPlace& place) const = 0;
   /// The random numbers with which `Sample` gives `wi`.
   virtual LiRandom Invert(const LightContext& at, const Vec3& wi) const = 0;
 

@@ -22,7 +22,7 @@ Vec2d EqualAreaSphereToSquare(const Vec3d& w) {
   const double x = std::abs(w.x), y = std::abs(w.y), z = std::abs(w.z);
   // sqrt(1 - z), from the sine.
   const double r = std::sqrt((x * x + y * y) / (1 + z));
-  const double phi = x == 0 && y == 0 ? 0 : std::atan2(y, x) * (2 / kPiD);
+  const double phi = Atan2(y, x) * (2 / kPiD);
   double v = phi * r;
   double u = r - v;
   if (w.z < 0) {

@@ -84,6 +84,12 @@ struct LeSample {
   Color Flux() const { return Le * static_cast<float>(cosTheta / (pdfPos * pdfDir)); }
 };
 
+/// Radiance from an infinite light, and the density per solid angle with which its direction is drawn.
+struct RadianceWithPdf {
+  Color L;
+  double pdf = 0;
+};
+
 /// The densities of an emitted ray.
 struct LePdf {
   double position = 0;   ///< as LeSample::pdfPos
@@ -172,6 +178,10 @@ class Light {
 
   /// Radiance that an infinite light sends back along a ray which left the scene; black for others.
   virtual Color Le(const Ray&) const { return Color(); }
+  /// `Le(ray)` and `Pdf_Li(at, ray.d, nullptr)`, in one look-up where they share it.
+  virtual RadianceWithPdf LeWithPdf(const LightContext& at, const Ray& ray) const {
+    return {Le(ray), Pdf_Li(at, ray.d, nullptr)};
+  }
   /// Radiance that an area light sends from the point `hit` along the unit vector `w`; black for others.
   virtual Color L(const SurfaceInteraction&, const Vec3& /*w*/) const { return Color(); }
 

@@ -167,10 +167,9 @@ Vec3 ProductStrategy::Sample(const LightContext& at, const LiRandom& u) const {
   return space_.frame.ToRender(space_.map.DirectionOf(cell, space_.map.SampleInCell(cell, numbers)));
 }
 
-double ProductStrategy::Pdf(const LightContext& at, const Vec3& wi) const {
+double ProductStrategy::Pdf(const LightContext& at, const Vec3&, const EnvironmentPlace& place) const {
   const Tree* const tree = TreeOf(at);
-  if (!tree) return space_.map.Pdf(space_.map.Density(), space_.frame.ToLight(wi));
-  const EnvironmentPlace place = space_.map.PlaceOf(space_.frame.ToLight(wi));
+  if (!tree) return space_.map.DensityAt(space_.map.Density(), place);
   double probability = 1;
   const Node* node = tree->nodes.data();
   while (node->firstChild >= 0) {

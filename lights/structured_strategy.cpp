@@ -213,8 +213,7 @@ Vec3 StructuredStrategy::Sample(const LightContext&, const LiRandom& u) const {
   return space_.frame.ToRender(space_.map.DirectionOf(drawn.cell, space_.map.SampleInCell(drawn.cell, numbers)));
 }
 
-double StructuredStrategy::Pdf(const LightContext&, const Vec3& wi) const {
-  const EnvironmentPlace place = space_.map.PlaceOf(space_.frame.ToLight(wi));
+double StructuredStrategy::Pdf(const LightContext&, const Vec3&, const EnvironmentPlace& place) const {
   const int rank = ranks_[BlockIndex(place.cell)];
   if (rank < 0) return 0;
   const double probability = byRank_.Probability(rank) * pyramid_.Probability(level_, place.cell);

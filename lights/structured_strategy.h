@@ -20,7 +20,7 @@ class StructuredStrategy final : public EnvironmentStrategy {
   explicit StructuredStrategy(const EnvironmentSpace& space);
 
   Vec3 Sample(const LightContext& at, const LiRandom& u) const override;
-  double Pdf(const LightContext& at, const Vec3& wi) const override;
+  double Pdf(const LightContext& at, const Vec3& wi, const EnvironmentPlace& place) const override;
   LiRandom Invert(const LightContext& at, const Vec3& wi) const override;
 
   TableUse Tables() const override {

@@ -47,7 +47,7 @@ class StudyRunner {
         diagnostics_([](const std::string& line) { fmt::print(stderr, "{}\n", line); }) {}
 
   Study Run() {
-    const Scene& scene = SceneOf("");
+    const Scene& scene = SceneOf("path", "");
     SceneConvergence& convergence = study_.convergence;
     convergence.name = name_;
     convergence.file = options_.scene.scene;
@@ -72,10 +72,12 @@ class StudyRunner {
     if (!isQuiet_) fmt::print(stderr, "{}: {}\n", name_, fmt::format(format, std::forward<Args>(args)...));
   }
 
-  const Scene& SceneOf(const std::string& strategy) {
-    std::unique_ptr<Scene>& scene = scenes_[strategy];
+  /// As it is loaded for that integrator.
+  const Scene& SceneOf(const std::string& integrator, const std::string& strategy) {
+    std::unique_ptr<Scene>& scene = scenes_[{IsLeftToDapple(integrator, ""), strategy}];
     if (!scene) {
       SceneOptions options = options_.scene;
+      options.integrator = integrator;
       options.strategy = strategy;
       scene = Load(options, diagnostics_).scene;
       RequireFilm(scene->Settings(), {}, MachineMemoryBytes());
@@ -95,7 +97,7 @@ class StudyRunner {
     for (const std::string& integrator : options_.integrators) {
       for (const std::string& strategy : options_.strategies.empty() ? own : options_.strategies) {
         Contender contender;
-        contender.integrator = PlanOf(integrator, SceneOf(strategy)).choice.name;
+        contender.integrator = PlanOf(integrator, SceneOf(integrator, strategy)).choice.name;
         contender.strategy = strategy;
         contender.name = integrator == "auto" ? fmt::format("auto ({})", contender.integrator) : integrator;
         if (!strategy.empty()) contender.name += " " + strategy;
@@ -149,7 +151,7 @@ class StudyRunner {
 
   void RunContender(size_t index, int seed, bool keepsPictures, const ErrorMeter& meter) {
     Contender& contender = study_.convergence.contenders[index];
-    const Scene& scene = SceneOf(contender.strategy);
+    const Scene& scene = SceneOf(requested_[index], contender.strategy);
     // The rule behind "auto" may look at the scene for a while, and that is a part of what it costs.
     const auto begin = std::chrono::steady_clock::now();
     const RenderPlan plan = PlanOf(requested_[index], scene, seed);
@@ -187,8 +189,8 @@ class StudyRunner {
   std::vector<double> times_;
   std::string name_;
   Diagnostics diagnostics_;
-  std::map<std::string, std::unique_ptr<Scene>> scenes_;  ///< by strategy
-  std::vector<std::string> requested_;                    ///< of each contender; "auto" too
+  std::map<std::pair<bool, std::string>, std::unique_ptr<Scene>> scenes_;  ///< for "auto" or not, by strategy
+  std::vector<std::string> requested_;                                     ///< of each contender; "auto" too
   Study study_;
 };
 

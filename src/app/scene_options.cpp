@@ -209,13 +209,17 @@ void SetBudget(const RenderSettings& settings, const SceneOptions& options, Rend
   }
 }
 
+Parameter StringParameter(const char* name, const std::string& value) {
+  Parameter parameter;
+  parameter.type = ParameterType::String;
+  parameter.name = name;
+  parameter.strings = {value};
+  return parameter;
+}
+
 void SetStrategy(const SceneOptions& options, SceneDescription* description) {
   const auto set = [&](const char* name, const std::string& value) {
-    Parameter parameter;
-    parameter.type = ParameterType::String;
-    parameter.name = name;
-    parameter.strings = {value};
-    if (SetOnInfiniteLights(description, parameter) == 0)
+    if (SetOnInfiniteLights(description, StringParameter(name, value)) == 0)
       throw Error(
           FileLocation(options.scene),
           fmt::format("strategy {}: the scene has no infinite light whose directions it could draw", options.strategy));
@@ -275,7 +279,13 @@ namespace {
 
 LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics) {
   SceneDescription description = ParsePbrtFile(options.scene, {.pbrtVersion = options.pbrtVersion}, diagnostics);
-  if (!options.strategy.empty()) SetStrategy(options, &description);
+  if (!options.strategy.empty()) {
+    SetStrategy(options, &description);
+  } else if (IsLeftToDapple(options.integrator, IntegratorNameOf(description))) {
+    // The algorithm's parts are left to it too: this strategy had the least error in the same time
+    // (docs/environment.md).
+    SetOnInfiniteLights(&description, StringParameter("sampling", "irradiance"), true);
+  }
   BuildOptions build;
   build.resolution = options.resolution;
   build.cropWindow = options.crop;

@@ -10,32 +10,33 @@
 
 namespace dapple {
 
+/// The sphere folded onto the square [-1, 1]^2; `v` of any length but zero.
+inline Vec2 OctahedralSquare(const Vec3& v) {
+  const float scale = 1 / (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+  const Vec2 p(v.x * scale, v.y * scale);
+  if (v.z >= 0) return p;
+  return {(1 - std::abs(p.y)) * std::copysign(1.f, p.x), (1 - std::abs(p.x)) * std::copysign(1.f, p.y)};
+}
+
+/// The unit vector at a point of the square.
+inline Vec3 OctahedralDirection(const Vec2& p) {
+  const float z = 1 - (std::abs(p.x) + std::abs(p.y));
+  if (z >= 0) return Normalize(Vec3(p.x, p.y, z));
+  return Normalize(
+      Vec3((1 - std::abs(p.y)) * std::copysign(1.f, p.x), (1 - std::abs(p.x)) * std::copysign(1.f, p.y), z));
+}
+
 class OctahedralVector {
  public:
   OctahedralVector() = default;
   /// `v` is of unit length.
   explicit OctahedralVector(const Vec3& v) {
-    const float scale = 1 / (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
-    float x = v.x * scale, y = v.y * scale;
-    if (v.z < 0) {
-      const float folded = (1 - std::abs(y)) * std::copysign(1.f, x);
-      y = (1 - std::abs(x)) * std::copysign(1.f, y);
-      x = folded;
-    }
-    x_ = Encode(x);
-    y_ = Encode(y);
+    const Vec2 p = OctahedralSquare(v);
+    x_ = Encode(p.x);
+    y_ = Encode(p.y);
   }
 
-  Vec3 Decode() const {
-    float x = DecodeCoordinate(x_), y = DecodeCoordinate(y_);
-    const float z = 1 - (std::abs(x) + std::abs(y));
-    if (z < 0) {
-      const float folded = (1 - std::abs(y)) * std::copysign(1.f, x);
-      y = (1 - std::abs(x)) * std::copysign(1.f, y);
-      x = folded;
-    }
-    return Normalize(Vec3(x, y, z));
-  }
+  Vec3 Decode() const { return OctahedralDirection({DecodeCoordinate(x_), DecodeCoordinate(y_)}); }
 
  private:
   static constexpr float kSteps = 32767;  // an even number of steps over [-1, 1] keeps 0 and the axes exact

@@ -155,7 +155,7 @@ Vec3d Sphere::Project(const Vec3d& p) const {
 }
 
 Vec2d Sphere::UvAt(const Vec3d& p) const {
-  const double theta = std::atan2(std::sqrt(p.x * p.x + p.y * p.y), p.z);
+  const double theta = Atan2(std::sqrt(p.x * p.x + p.y * p.y), p.z);
   return {phiMax_ > 0 ? std::min(1.0, Azimuth(p.x, p.y) / phiMax_) : 0,
           thetaZMin_ > thetaZMax_ ? std::clamp((theta - thetaZMin_) / (thetaZMax_ - thetaZMin_), 0.0, 1.0) : 0};
 }

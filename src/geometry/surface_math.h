@@ -85,7 +85,7 @@ double Integrate(double a, double b, int panels, F f) {
 
 /// The angle of (x, y) in [0, 2 pi).
 inline double Azimuth(double x, double y) {
-  const double phi = std::atan2(y, x);
+  const double phi = Atan2(y, x);
   return phi < 0 ? std::min(phi + 2 * kPiD, std::nextafter(2 * kPiD, 0.0)) : phi;
 }
 

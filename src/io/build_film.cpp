@@ -204,7 +204,7 @@ void BuildSppm(const Entity& integrator, RenderSettings* settings) {
 void BuildIntegrator(const BuildContext& context, RenderSettings* settings) {
   const Entity& integrator = context.description.integrator;
   if (!integrator.IsGiven()) return;
-  settings->integrator = integrator.type == "volpath" ? "path" : integrator.type;
+  settings->integrator = IntegratorNameOf(context.description);
   settings->integratorLocation = integrator.location;
   settings->maxDepth = GetIntAtLeast(integrator, "maxdepth", kPbrtDefaultDepth, 0);
   if (integrator.params.Has("seed")) settings->seed = integrator.params.GetInt("seed", 0);

@@ -141,9 +141,10 @@ EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
   }
   const std::string sampling = light.params.GetString("sampling", "importance");
   static const std::pair<const char*, EnvironmentSampling> kSamplings[] = {
-      {"uniform", EnvironmentSampling::Uniform},       {"cosine", EnvironmentSampling::Cosine},
-      {"importance", EnvironmentSampling::Importance}, {"compensated", EnvironmentSampling::Compensated},
-      {"structured", EnvironmentSampling::Structured}, {"product", EnvironmentSampling::Product}};
+      {"uniform", EnvironmentSampling::Uniform},         {"cosine", EnvironmentSampling::Cosine},
+      {"importance", EnvironmentSampling::Importance},   {"irradiance", EnvironmentSampling::Irradiance},
+      {"compensated", EnvironmentSampling::Compensated}, {"structured", EnvironmentSampling::Structured},
+      {"product", EnvironmentSampling::Product}};
   std::vector<std::string> names;
   for (const auto& [name, value] : kSamplings) {
     names.emplace_back(name);

@@ -26,10 +26,10 @@ std::filesystem::path SceneDescription::ResolvePath(const std::string& name, con
   return Exists(besideFile) ? besideFile : besideScene;
 }
 
-int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter) {
+int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter, bool whereAbsent) {
   int count = 0;
   for (LightDescription& light : description->lights) {
-    if (light.type != "infinite") continue;
+    if (light.type != "infinite" || (whereAbsent && light.params.Has(parameter.name))) continue;
     Parameter own = parameter;
     own.location = light.location;
     light.params.Add(std::move(own));

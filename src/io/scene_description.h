@@ -90,7 +90,13 @@ struct SceneDescription {
   std::filesystem::path ResolvePath(const std::string& name, const FileLocation& namedAt) const;
 };
 
-/// Sets a parameter of every infinite light, at the light's place; returns how many there are.
-int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter);
+/// The integrator that the file asks for, by Dapple's name where it has one; may be empty.
+inline std::string IntegratorNameOf(const SceneDescription& description) {
+  return description.integrator.type == "volpath" ? "path" : description.integrator.type;
+}
+
+/// Sets a parameter of every infinite light (or of those that lack it), at the light's place; returns how many there
+/// are.
+int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter, bool whereAbsent = false);
 
 }  // namespace dapple

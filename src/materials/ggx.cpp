@@ -40,7 +40,7 @@ FacetNumbers Ggx::InvertVisible(const Vec3& w, const Vec3& wm) const {
   const double p1 = static_cast<double>(Dot(n, t1)), p2 = static_cast<double>(Dot(n, t2));
   const double edge = SafeSqrt(1 - p1 * p1), s = (1 + static_cast<double>(v.z)) / 2;
   const double q = (p2 - (1 - s) * edge) / s;
-  const double phi = std::atan2(q, p1);
+  const double phi = Atan2(q, p1);
   return {{std::min(1.0, p1 * p1 + q * q), (phi < 0 ? phi + 2 * kPiD : phi) / (2 * kPiD)}};
 }
 

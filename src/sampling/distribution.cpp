@@ -160,6 +160,29 @@ double Distribution2D::Probability(const Vec2i& cell) const {
   return CellProbability(RowCdf(cell.y), cell.x) * marginal_.Probability(cell.y);
 }
 
+double Distribution2D::RowShare(int y, int first, int last) const {
+  const std::span<const double> cdf = RowCdf(y);
+  return (cdf[static_cast<size_t>(last)] - cdf[static_cast<size_t>(first)]) * marginal_.Probability(y);
+}
+
+DiscreteSample Distribution2D::SampleRow(int y, int first, int last, double u) const {
+  const std::span<const double> part =
+      RowCdf(y).subspan(static_cast<size_t>(first), static_cast<size_t>(last - first) + 1);
+  const double sum = part.back() - part.front();
+  // Rounding must not reach beyond the part.
+  const double target = std::min(part.front() + u * sum, std::nextafter(part.back(), 0.0));
+  DiscreteSample drawn = FindCell(part, {}, target);
+  drawn.index += first;
+  drawn.probability /= sum;
+  return drawn;
+}
+
+double Distribution2D::InvertRow(const Vec2i& cell, int first, int last, double u) const {
+  const std::span<const double> cdf = RowCdf(cell.y);
+  const double begin = cdf[static_cast<size_t>(first)];
+  return std::clamp((InvertCell(cdf, cell.x, u) - begin) / (cdf[static_cast<size_t>(last)] - begin), 0.0, 1.0);
+}
+
 Vec2d Distribution2D::InvertDiscrete(const Vec2i& cell, const Vec2d& u) const {
   return {InvertCell(RowCdf(cell.y), cell.x, u.x), marginal_.InvertDiscrete(cell.y, u.y)};
 }

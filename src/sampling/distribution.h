@@ -95,6 +95,14 @@ class Distribution2D {
   /// The random numbers with which `SampleDiscrete` gives `cell` and leaves `u`.
   Vec2d InvertDiscrete(const Vec2i& cell, const Vec2d& u) const;
 
+  // A row cut to the columns from `first` to before `last`, of which one at least has a weight.
+  /// The sum of their weights as a share of the whole; of any columns.
+  double RowShare(int y, int first, int last) const;
+  /// A column of them; its probability is within the part.
+  DiscreteSample SampleRow(int y, int first, int last, double u) const;
+  /// The random number with which `SampleRow` gives the column of `cell` and leaves `u`.
+  double InvertRow(const Vec2i& cell, int first, int last, double u) const;
+
   ContinuousSample2D Sample(const Vec2d& u) const;
   /// Density at p in [0, 1]^2, per unit area.
   double Pdf(const Vec2d& p) const;

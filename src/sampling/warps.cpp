@@ -14,7 +14,7 @@ Vec3d OnSphere(double z, double sinTheta, double turn) {
 }  // namespace
 
 double TurnOf(double x, double y) {
-  const double turn = std::atan2(y, x) / (2 * kPiD);
+  const double turn = Atan2(y, x) / (2 * kPiD);
   return turn < 0 ? turn + 1 : turn;
 }
 

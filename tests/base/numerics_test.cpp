@@ -74,6 +74,33 @@ TEST(Numerics, NeighboursOfFloats) {
   EXPECT_EQ(NextFloatUp(-1.f), -kOneMinusEpsilon);
 }
 
+TEST(Numerics, Atan2IsTheLibrarysToRounding) {
+  constexpr int kSteps = 100'000;
+  double largest = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = (i + 0.5) / kSteps * kPiD;
+    for (double r : {1e-200, 1., 1e150})
+      for (double sign : {1., -1.}) {
+        const double y = sign * r * std::sin(angle), x = r * std::cos(angle);
+        const double exact = std::atan2(y, x);
+        // The angle is of a quadrant's size where it is taken from a half or a whole turn.
+        largest = std::max(largest, std::abs(Atan2(y, x) - exact) / std::max(std::abs(exact), 1e-300));
+      }
+  }
+  EXPECT_LE(largest, 4.5e-16);
+  // Small angles keep their relative precision.
+  for (double t = 1; t > 1e-300; t /= 3) EXPECT_NEAR(Atan2(t, 1) / std::atan(t), 1, 4.5e-16) << t;
+}
+
+TEST(Numerics, Atan2IsExactOnTheAxes) {
+  EXPECT_EQ(Atan2(0, 0), 0);
+  EXPECT_EQ(Atan2(0, 2), 0);
+  EXPECT_EQ(Atan2(3, 0), kPiD / 2);
+  EXPECT_EQ(Atan2(-3, 0), -kPiD / 2);
+  EXPECT_EQ(Atan2(0, -1), kPiD);
+  EXPECT_EQ(Atan2(2, 2), kPiD / 4);
+}
+
 TEST(Color, Arithmetic) {
   const Color a(1, 2, 3), b(4, 5, 6);
   EXPECT_EQ(a + b, Color(5, 7, 9));

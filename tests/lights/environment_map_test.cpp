@@ -114,7 +114,7 @@ TEST(EnvironmentMap, DensityIsPositiveExactlyWhereRadianceIs) {
   for (const auto& [image, mapping] : Maps()) {
     const EnvironmentMap map(image, mapping, Color(1));
     for (int i = 0; i < 20000; ++i) {
-      const EnvironmentValue value = map.Evaluate(SampleSphere(random.Get2D()));
+      const RadianceWithPdf value = map.Evaluate(SampleSphere(random.Get2D()));
       ASSERT_EQ(value.pdf > 0, !value.L.IsBlack());
       ASSERT_TRUE(std::isfinite(value.pdf));
     }
@@ -143,7 +143,7 @@ TEST(EnvironmentMap, RadianceOverDensityHardlyVaries) {
     const EnvironmentMap map(gray, mapping, Color(1));
     RandomNumbers random(8);
     for (int i = 0; i < 20000; ++i) {
-      const EnvironmentValue value = map.Evaluate(map.Sample(random.Get2D()));
+      const RadianceWithPdf value = map.Evaluate(map.Sample(random.Get2D()));
       const double ratio = static_cast<double>(value.L.g) / value.pdf / static_cast<double>(map.Integral().g);
       // Exactly one, but for the sine within a cell, which is noticeable next to the poles only.
       ASSERT_TRUE(ratio > 0.45 && ratio < 2.2) << ratio;
@@ -188,7 +188,7 @@ TEST(EnvironmentMap, IntegralsAreThoseOfTheLookup) {
     for (int y = 0; y < rows; ++y) {
       for (int x = 0; x < columns; ++x) {
         const double u = (x + 0.5) / columns, v = (y + 0.5) / rows;
-        const EnvironmentValue value = map.Evaluate(isLatLong ? SampleSphere({v, u}) : EqualAreaSquareToSphere({u, v}));
+        const RadianceWithPdf value = map.Evaluate(isLatLong ? SampleSphere({v, u}) : EqualAreaSquareToSphere({u, v}));
         radiance += static_cast<double>(value.L.b) * (4 * kPiD / (rows * columns));
         density += value.pdf * (4 * kPiD / (rows * columns));
       }
@@ -201,7 +201,7 @@ TEST(EnvironmentMap, IntegralsAreThoseOfTheLookup) {
 TEST(EnvironmentMap, SurvivesThePoles) {
   const EnvironmentMap map(OneBrightTexel(8, 4, 0, 0), Mapping::LatLong, Color(1));
   for (const Vec3d& pole : {Vec3d(0, 0, 1), Vec3d(0, 0, -1), Vec3d(1e-30, 0, 1), Vec3d(0, -1e-12, -1)}) {
-    const EnvironmentValue value = map.Evaluate(pole);
+    const RadianceWithPdf value = map.Evaluate(pole);
     EXPECT_TRUE(value.L.IsFinite() && std::isfinite(value.pdf));
     const Vec2d u = map.Invert(pole);
     EXPECT_TRUE(std::isfinite(u.x) && std::isfinite(u.y));

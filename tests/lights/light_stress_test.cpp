@@ -145,7 +145,7 @@ TEST(LightStress, MapsWithOneBrightTexel) {
     double mean = 0;
     for (int i = 0; i < kColumns * kRows; ++i) {
       const Vec2d u((i % kColumns + 0.5) / kColumns, (i / kColumns + 0.5) / kRows);
-      const EnvironmentValue value = map.Evaluate(map.Sample(u));
+      const RadianceWithPdf value = map.Evaluate(map.Sample(u));
       ASSERT_GT(value.pdf, 0) << c.width << " " << c.y;
       mean += static_cast<double>(value.L.g) / value.pdf / (kColumns * kRows);
     }

@@ -153,6 +153,34 @@ TEST(Distribution2D, DrawDensityAndInverseAgree) {
   }
 }
 
+// Any columns of a row: those with weight are drawn, each with its share of the part, and found again.
+TEST(Distribution2D, PartsOfRowsAreDrawnAndFoundAgain) {
+  const Distribution2D table = HardTable();
+  const std::vector<double> numbers = RandomNumbers(50);
+  double whole = 0;
+  for (int y = 0; y < table.Height(); ++y) {
+    whole += table.RowShare(y, 0, table.Width());
+    for (int first = 0; first < table.Width(); ++first)
+      for (int last = first + 1; last <= table.Width(); ++last) {
+        double sum = 0;
+        for (int x = first; x < last; ++x) sum += table.Probability({x, y});
+        ASSERT_NEAR(table.RowShare(y, first, last), sum, 1e-15);
+        if (sum == 0) continue;
+        for (double u : numbers) {
+          const DiscreteSample drawn = table.SampleRow(y, first, last, u);
+          ASSERT_GE(drawn.index, first);
+          ASSERT_LT(drawn.index, last);
+          ASSERT_GT(drawn.probability, 0);
+          ASSERT_NEAR(drawn.probability * sum, table.Probability({drawn.index, y}), 1e-15);
+          // The row's table is known to an ulp of one: of the part that is a greater share.
+          ASSERT_NEAR(table.InvertRow({drawn.index, y}, first, last, drawn.u), u,
+                      4 * 0x1p-53 * table.RowShare(y, 0, table.Width()) / sum);
+        }
+      }
+  }
+  EXPECT_NEAR(whole, 1, 1e-15);
+}
+
 TEST(Distribution2D, DensityIsTheWeightOverTheMean) {
   const Distribution2D table = Make({1, 2, 3, 0, 5, 1}, 3, 2);
   EXPECT_NEAR(table.Pdf({0.5, 0.25}), 2 / (12 / 6.0), 1e-14);

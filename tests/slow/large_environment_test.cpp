@@ -66,7 +66,7 @@ void ExpectClosedForm(const EnvironmentLight& light) {
   const double below = (std::cos(kTheta) - std::cos(kTheta + h / 2) * std::sin(h / 2) / (h / 2)) * width / integral;
   const double height = std::cos(kTheta) - std::cos(kTheta + h);
   const double theta = std::acos(std::cos(kTheta) - height / 2), phi = kPhi + width / 4;
-  const EnvironmentValue value =
+  const RadianceWithPdf value =
       light.Map().Evaluate({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
   EXPECT_NEAR(static_cast<double>(value.L.g) / (7 * 0.75 * (1 - (theta - kTheta) / h)), 1, kRelativeError);
   EXPECT_NEAR(value.pdf / (below / 2 * 1.5 / (width * height)), 1, kRelativeError);
