@@ -284,7 +284,7 @@ LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics)
   } else if (IsLeftToDapple(options.integrator, IntegratorNameOf(description))) {
     // The algorithm's parts are left to it too: this strategy had the least error in the same time
     // (docs/environment.md).
-    SetOnInfiniteLights(&description, StringParameter("sampling", "irradiance"), true);
+    SetDefaultOnEnvironmentMaps(&description, StringParameter("sampling", "irradiance"));
   }
   BuildOptions build;
   build.resolution = options.resolution;

@@ -26,16 +26,30 @@ std::filesystem::path SceneDescription::ResolvePath(const std::string& name, con
   return Exists(besideFile) ? besideFile : besideScene;
 }
 
-int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter, bool whereAbsent) {
+namespace {
+
+void Set(LightDescription* light, Parameter parameter) {
+  parameter.location = light->location;
+  light->params.Add(std::move(parameter));
+}
+
+}  // namespace
+
+int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter) {
   int count = 0;
   for (LightDescription& light : description->lights) {
-    if (light.type != "infinite" || (whereAbsent && light.params.Has(parameter.name))) continue;
-    Parameter own = parameter;
-    own.location = light.location;
-    light.params.Add(std::move(own));
+    if (light.type != "infinite") continue;
+    Set(&light, parameter);
     ++count;
   }
   return count;
+}
+
+void SetDefaultOnEnvironmentMaps(SceneDescription* description, const Parameter& parameter) {
+  for (LightDescription& light : description->lights) {
+    const bool hasImage = light.params.Has("mapname") || light.params.Has("filename");
+    if (light.type == "infinite" && hasImage && !light.params.Has(parameter.name)) Set(&light, parameter);
+  }
 }
 
 }  // namespace dapple

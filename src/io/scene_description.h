@@ -95,8 +95,10 @@ inline std::string IntegratorNameOf(const SceneDescription& description) {
   return description.integrator.type == "volpath" ? "path" : description.integrator.type;
 }
 
-/// Sets a parameter of every infinite light (or of those that lack it), at the light's place; returns how many there
-/// are.
-int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter, bool whereAbsent = false);
+/// Sets a parameter of every infinite light, at the light's place; returns how many there are.
+int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter);
+
+/// Sets a parameter of the infinite lights that have an image and not that parameter.
+void SetDefaultOnEnvironmentMaps(SceneDescription* description, const Parameter& parameter);
 
 }  // namespace dapple

@@ -91,9 +91,11 @@ TEST_P(AllIntegratorsAgree, BlockByBlock) {
     const std::string integrator(name);
     if (integrator == "path" || (integrator == "light_tracing" && !canConnect)) continue;
     const bool isLightTracing = integrator == "light_tracing";
-    const GroupedImages images = isLightTracing
-                                     ? RenderGroups(scene, integrator, Options(), 2 * kPasses, kGroups, 2)
-                                     : (integrator == "sppm" ? sppm : AtRadiusZero(scene, integrator, kPasses / 2));
+    const GroupedImages images =
+        isLightTracing
+            ? RenderGroups(scene, integrator, Options(), 2 * kPasses, kGroups, 2)
+            : (integrator == "sppm" ? sppm
+                                    : AtRadiusZero(scene, integrator, integrator == "hybrid" ? kPasses / 2 : kPasses));
     const std::vector<bool> leftOut = isLightTracing ? specular : std::vector<bool>();
     if (PathSeesAll(scene.Facts())) {
       expectAgreement(integrator + " against path", CompareBlocks(images, path, kBlockSize, kTolerance, leftOut));
