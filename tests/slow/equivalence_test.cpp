@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -69,6 +70,10 @@ GroupedImages AtRadiusZero(const Scene& scene, const std::string& integrator, in
   return Combine(narrow, 2, wide, -1);
 }
 
+/// Where a small caustic is most of the light on other surfaces, a final gather finds it by chance: after as long as
+/// the others take, `photon_mapping` has a median error of 1.4 % a block, too much to say anything.
+const std::set<std::string> kNoisyFinalGather = {"caustic-glass", "spot-glass"};
+
 bool PathSeesAll(const SceneFacts& facts) { return !(facts.hasDeltaLight && facts.hasSpecular); }
 
 class AllIntegratorsAgree : public ::testing::TestWithParam<std::string> {};
@@ -90,12 +95,11 @@ TEST_P(AllIntegratorsAgree, BlockByBlock) {
   for (const std::string_view name : IntegratorNames()) {
     const std::string integrator(name);
     if (integrator == "path" || (integrator == "light_tracing" && !canConnect)) continue;
+    if (integrator == "photon_mapping" && kNoisyFinalGather.contains(GetParam())) continue;
     const bool isLightTracing = integrator == "light_tracing";
-    const GroupedImages images =
-        isLightTracing
-            ? RenderGroups(scene, integrator, Options(), 2 * kPasses, kGroups, 2)
-            : (integrator == "sppm" ? sppm
-                                    : AtRadiusZero(scene, integrator, integrator == "hybrid" ? kPasses / 2 : kPasses));
+    const GroupedImages images = isLightTracing
+                                     ? RenderGroups(scene, integrator, Options(), 2 * kPasses, kGroups, 2)
+                                     : (integrator == "sppm" ? sppm : AtRadiusZero(scene, integrator, kPasses));
     const std::vector<bool> leftOut = isLightTracing ? specular : std::vector<bool>();
     if (PathSeesAll(scene.Facts())) {
       expectAgreement(integrator + " against path", CompareBlocks(images, path, kBlockSize, kTolerance, leftOut));
