@@ -71,7 +71,7 @@ GroupedImages AtRadiusZero(const Scene& scene, const std::string& integrator, in
 }
 
 /// Where a small caustic is most of the light on other surfaces, a final gather finds it by chance: after as long as
-/// the others take, `photon_mapping` has a median error of 1.4 % a block, too much to say anything.
+/// the others take, `photon_mapping` has a median error of 1.2 to 1.4 % a block, too much to say anything.
 const std::set<std::string> kNoisyFinalGather = {"caustic-glass", "spot-glass"};
 
 bool PathSeesAll(const SceneFacts& facts) { return !(facts.hasDeltaLight && facts.hasSpecular); }
