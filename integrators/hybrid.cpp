@@ -1,11 +1,8 @@
 #include "integrators/hybrid.h"
 
-#include "integrators/pixel_loop.h"
+#include "integrators/density_sum.h"
 #include "src/base/error.h"
-#include "src/photons/coverage.h"
-#include "src/photons/kernel.h"
 #include "src/photons/radius_schedule.h"
-#include "src/photons/same_surface.h"
 
 namespace dapple {
 
@@ -37,7 +34,7 @@ MergeSite HybridIntegrator::SiteAt(const Vec3& p, const Merging& merging) const 
 }
 
 PassStats HybridIntegrator::RenderPass(int pass, Film& film) const {
-  Merging merging{RadiusFactor(pass), {}};
+  Merging merging{RadiusFactor(pass), film.TracksBlur(), {}};
   PassStats stats = ShootPhotons(pass, &merging);
   const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
     return Radiance(camera.ray, merging, sampler, tileStats);
@@ -68,24 +65,25 @@ PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
   return stats;
 }
 
-Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const {
+PathEstimate HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler& sampler,
+                                        PassStats& stats) const {
   CameraWalk walk;
   walk.ray = ray;
-  Color radiance;
+  Color radiance, blur;
   float etaScale = 1;
   for (;;) {
     ++stats.cameraRays;
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(walk.ray);
     radiance += walk.throughput * EmittedAlong(walk, hit ? &*hit : nullptr, stats);
-    if (!hit) return radiance;
+    if (!hit) return {radiance, blur};
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
       walk.ray = SpawnRay(*hit, walk.ray.d);
       continue;
     }
-    if (walk.scattered >= options_.maxDepth) return radiance;
+    if (walk.scattered >= options_.maxDepth) return {radiance, blur};
     const Bsdf bsdf = material->GetBsdf(*hit);
-    if (bsdf.IsBlack()) return radiance;
+    if (bsdf.IsBlack()) return {radiance, blur};
 
     walk.weights.Arrive(static_cast<double>(AbsDot(hit->ng, hit->wo)));
     ++walk.scattered;
@@ -96,13 +94,16 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
     walk.last.at = ContextOf(*scene_, *hit, bsdf, options_.direct);
     const MergeSite site = bsdf.IsPurelySpecular() ? MergeSite{} : SiteAt(hit->p, merging);
     if (!bsdf.IsPurelySpecular()) {
-      if (sampler.Get1D() < walk.mergeProbability)
-        radiance += walk.throughput * Merge(walk, merging, site, *hit, bsdf, sampler.BlockSeed(), stats);
+      if (sampler.Get1D() < walk.mergeProbability) {
+        const PathEstimate merged = Merge(walk, merging, site, *hit, bsdf, sampler.BlockSeed(), stats);
+        radiance += walk.throughput * merged.radiance;
+        blur += walk.throughput * merged.blur;
+      }
       radiance += walk.throughput * SampleDirectLight(walk, site, *hit, bsdf, sampler, stats);
     }
 
     const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
-    if (!next) return radiance;
+    if (!next) return {radiance, blur};
     walk.throughput *= next->weight;
     etaScale *= next->eta * next->eta;
     const double cosOut = static_cast<double>(AbsDot(hit->ng, next->wi));
@@ -113,7 +114,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
     } else {
       const double pdf = static_cast<double>(next->pdf);
       const double keep = ContinueProbability(pdf, site.photons);
-      if (uContinue >= keep) return radiance;
+      if (uContinue >= keep) return {radiance, blur};
       uContinue /= keep;
       walk.throughput /= static_cast<float>(keep);
       walk.last.pdf = static_cast<float>(pdf * keep);
@@ -122,7 +123,7 @@ Color HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler
       walk.mergeProbability *= Sharpness(pdf);
     }
     walk.ray = SpawnRay(*hit, next->wi);
-    if (!SurvivesRoulette(walk.scattered, uContinue, etaScale, &walk.throughput)) return radiance;
+    if (!SurvivesRoulette(walk.scattered, uContinue, etaScale, &walk.throughput)) return {radiance, blur};
   }
 }
 
@@ -166,19 +167,19 @@ Color HybridIntegrator::SampleDirectLight(const CameraWalk& walk, const MergeSit
   return dapple::SampleDirectLight(*scene_, hit, bsdf, walk.last.at, sampler, stats, options_.direct, weigh);
 }
 
-Color HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at,
-                              const SurfaceInteraction& hit, const Bsdf& bsdf, uint64_t seed, PassStats& stats) const {
+PathEstimate HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at,
+                                     const SurfaceInteraction& hit, const Bsdf& bsdf, uint64_t seed,
+                                     PassStats& stats) const {
   ++stats.gathers;
-  const Kernel kernel(options_.kernel, at.radius);
-  const GatherSite site(hit.p, hit.ng, hit.wo, at.radius, bsdf.Flags().HasTransmission());
   const double eta = at.eta * walk.mergeProbability, before = walk.weights.Before().merging;
-  Color sum;
+  DensitySum sum(options_.kernel, hit, bsdf.Flags().HasTransmission(), at.radius, merging.tracksBlur);
   merging.map.ForEachWithin(hit.p, at.radius, [&](const Vec3& position, const Photon& photon, float distanceSquared) {
     ++stats.photonsGathered;
     if (photon.scattered + walk.scattered > options_.maxDepth) return;
     const Vec3 wi = photon.wi.Decode();
-    if (!IsOnSameSurface(site, position, distanceSquared, photon.normal.Decode(), wi)) return;
-    // Photons are dense by |ng.wi|, and Eval has the shading normal's cosine.
+    const PhotonPlace place{position, distanceSquared, photon.normal.Decode(), wi};
+    if (!sum.Takes(place)) return;
+    // Eval has the shading normal's cosine.
     const float cosine = AbsDot(hit.ng, wi);
     if (!(cosine > 0)) return;
     const Color value = bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux;
@@ -188,11 +189,13 @@ Color HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, co
                     (static_cast<double>(photon.paths) +
                      walk.mergeProbability * Sharpness(pdf) * static_cast<double>(photon.merging));
     if (before > 0) others += static_cast<double>(bsdf.Pdf(wi, hit.wo, TransportMode::Importance)) * before;
-    sum += value * (kernel(distanceSquared) / cosine * static_cast<float>(at.eta / (eta + others)));
+    sum.Add(place, value, cosine, static_cast<float>(at.eta / (eta + others)));
   });
-  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, hit, site, options_.kernel, seed, &stats.probeRays);
-  return Finite(sum / static_cast<float>(plan_->paths), &stats.nonFinite,
-                [&] { return SourceOfGather(*scene_, merging.map, at.radius, hit, bsdf); });
+  const PathEstimate estimate = sum.Estimate(*scene_, seed, &stats.probeRays);
+  const auto paths = static_cast<float>(plan_->paths);
+  return {Finite(estimate.radiance / paths, &stats.nonFinite,
+                 [&] { return SourceOfGather(*scene_, merging.map, at.radius, hit, bsdf); }),
+          estimate.blur / paths};
 }
 
 }  // namespace dapple

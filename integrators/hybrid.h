@@ -12,6 +12,7 @@
 
 #include "integrators/light_walk.h"
 #include "integrators/photon_shooting.h"
+#include "integrators/pixel_loop.h"
 #include "src/base/octahedral.h"
 #include "src/photons/photon_map.h"
 
@@ -26,6 +27,7 @@ class HybridIntegrator final : public Integrator {
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
   PreparationUse Preparation() const override { return plan_->Use(); }
+  bool EstimatesDensity() const override { return true; }
   int DefaultPasses() const override { return 64; }
 
  private:
@@ -41,6 +43,7 @@ class HybridIntegrator final : public Integrator {
   /// How a pass merges.
   struct Merging {
     float radiusFactor;  ///< on the starting radius
+    bool tracksBlur;     ///< merges with half the radius too
     PhotonMap<Photon> map;
   };
 
@@ -58,14 +61,14 @@ class HybridIntegrator final : public Integrator {
 
   /// Leaves the map to be filled.
   PassStats ShootPhotons(int pass, Merging* merging) const;
-  Color Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const;
+  PathEstimate Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const;
   /// Radiance that the path's last ray runs into, with its weight. `hit` is null where the ray left the scene.
   Color EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit, PassStats& stats) const;
   Color SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,
                           const Bsdf& bsdf, Sampler& sampler, PassStats& stats) const;
   /// Radiance of the photons within the radius, with their weights.
-  Color Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
-              const Bsdf& bsdf, uint64_t seed, PassStats& stats) const;
+  PathEstimate Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
+                     const Bsdf& bsdf, uint64_t seed, PassStats& stats) const;
 
   IntegratorOptions options_;
   const Scene* scene_ = nullptr;

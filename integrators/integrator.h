@@ -92,6 +92,9 @@ class Integrator {
   virtual PreparationUse Preparation() const { return {}; }
   /// Adds pass number `pass` (from 0) to the film. May be called in any order and for any set of passes.
   virtual PassStats RenderPass(int pass, Film& film) const = 0;
+  /// Whether the picture has a bias, which shrinks with the passes, because densities are estimated: then it adds to
+  /// the film's blur where that is tracked.
+  virtual bool EstimatesDensity() const { return false; }
   /// Passes where neither the scene nor the user says how many.
   virtual int DefaultPasses() const = 0;
 };

@@ -1,9 +1,7 @@
 #include "integrators/photon_gatherer.h"
 
-#include "integrators/pixel_loop.h"
-#include "src/photons/coverage.h"
+#include "integrators/density_sum.h"
 #include "src/photons/radius_schedule.h"
-#include "src/photons/same_surface.h"
 
 namespace dapple {
 
@@ -36,7 +34,7 @@ PreparationUse PhotonGatherer::Preparation() const {
 
 PassStats PhotonGatherer::RenderPass(int pass, Film& film) const {
   PassStats stats;
-  const PhotonPass photons = TracePhotons(pass, &stats);
+  const PhotonPass photons = TracePhotons(pass, film.TracksBlur(), &stats);
   const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
     return Radiance(camera, photons, sampler, tileStats);
   };
@@ -45,7 +43,7 @@ PassStats PhotonGatherer::RenderPass(int pass, Film& film) const {
   return stats;
 }
 
-PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, PassStats* stats) const {
+PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, bool tracksBlur, PassStats* stats) const {
   const auto trace = [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
     const auto store = [&](const LightVertex& v) {
       // Light straight from its source is sampled where it is needed.
@@ -55,17 +53,17 @@ PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, PassStats* sta
     AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store), emitted, &chunk.stats);
   };
   ShotPhotons<Photon> shot = ShootPhotons<Photon>(*plan_, seed_, pass, trace);
-  PhotonPass photons{{}, {}, 1 / static_cast<float>(plan_->paths), RadiusFactor(pass)};
+  PhotonPass photons{{}, {}, 1 / static_cast<float>(plan_->paths), RadiusFactor(pass), tracksBlur};
   if (causticRadius_)
     photons.caustics = BuildPhotonMap(shot.Extract([](const Photon& photon) { return photon.isCaustic; }), stats);
   photons.all = BuildPhotonMap(std::move(shot), stats);
   return photons;
 }
 
-Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,
-                               PassStats& stats) const {
+PathEstimate PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,
+                                      PassStats& stats) const {
   Ray ray = camera.ray;
-  Color radiance, throughput(1);
+  Color radiance, blur, throughput(1);
   LastScattering last;
   float etaScale = 1;
   bool hasGathered = false, isDone = false;
@@ -76,15 +74,15 @@ Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photon
     // Sources that a gathering surface sees by specular ones reach it as caustic photons.
     if (!hasGathered || !last.isSpecular)
       radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, stats, options_.direct);
-    if (!hit) return radiance;
+    if (!hit) return {radiance, blur};
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
       ray = SpawnRay(*hit, ray.d);
       continue;
     }
-    if (scattered >= options_.maxDepth || isDone) return radiance;
+    if (scattered >= options_.maxDepth || isDone) return {radiance, blur};
     const Bsdf bsdf = material->GetBsdf(*hit);
-    if (bsdf.IsBlack()) return radiance;
+    if (bsdf.IsBlack()) return {radiance, blur};
 
     ++scattered;
     sampler.StartBlock(scattered);
@@ -96,11 +94,13 @@ Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photon
     if (!bsdf.IsPurelySpecular()) {
       radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
       const GatherPoint point{*hit, bsdf, options_.maxDepth - scattered, goesOn, sampler.BlockSeed()};
-      radiance += throughput * Gather(photons, point, stats);
+      const PathEstimate gathered = Gather(photons, point, stats);
+      radiance += throughput * gathered.radiance;
+      blur += throughput * gathered.blur;
     }
 
     const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
-    if (!next) return radiance;
+    if (!next) return {radiance, blur};
     throughput *= next->weight;
     etaScale *= next->eta * next->eta;
     last = {next->IsSpecular(), at, next->pdf};
@@ -111,39 +111,42 @@ Color PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photon
       if (!isGlossy) --gathersLeft;
     }
     ray = SpawnRay(*hit, next->wi);
-    if (!SurvivesRoulette(scattered, uRoulette, etaScale, &throughput)) return radiance;
+    if (!SurvivesRoulette(scattered, uRoulette, etaScale, &throughput)) return {radiance, blur};
   }
 }
 
-Color PhotonGatherer::Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const {
-  const auto radiusOf = [&](const GatherRadius& radius) {
-    return radius.At(point.hit.p).radius * photons.radiusFactor;
+PathEstimate PhotonGatherer::Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const {
+  Color sum, blur;
+  const auto add = [&](const Map& map, const GatherRadius& radius) {
+    const PathEstimate gathered =
+        Gather(map, radius.At(point.hit.p).radius * photons.radiusFactor, photons.tracksBlur, point, stats);
+    sum += gathered.radiance;
+    blur += gathered.blur;
   };
-  Color sum;
-  if (causticRadius_) sum += Gather(photons.caustics, radiusOf(*causticRadius_), point, stats);
-  if (!point.causticsOnly || (!causticRadius_ && scene_->Facts().MayHaveCaustics()))
-    sum += Gather(photons.all, radiusOf(plan_->radius), point, stats);
-  return sum * photons.weight;
+  if (causticRadius_) add(photons.caustics, *causticRadius_);
+  if (!point.causticsOnly || (!causticRadius_ && scene_->Facts().MayHaveCaustics())) add(photons.all, plan_->radius);
+  return {sum * photons.weight, blur * photons.weight};
 }
 
-Color PhotonGatherer::Gather(const Map& map, float radius, const GatherPoint& point, PassStats& stats) const {
+PathEstimate PhotonGatherer::Gather(const Map& map, float radius, bool tracksBlur, const GatherPoint& point,
+                                    PassStats& stats) const {
   ++stats.gathers;
   const SurfaceInteraction& hit = point.hit;
-  const Kernel kernel(options_.kernel, radius);
-  const GatherSite site(hit.p, hit.ng, hit.wo, radius, point.bsdf.Flags().HasTransmission());
-  Color sum;
+  DensitySum sum(options_.kernel, hit, point.bsdf.Flags().HasTransmission(), radius, tracksBlur);
   map.ForEachWithin(hit.p, radius, [&](const Vec3& position, const Photon& photon, float distanceSquared) {
     ++stats.photonsGathered;
     if (photon.scattered > point.maxScattered || (point.causticsOnly && !photon.isCaustic)) return;
     const Vec3 wi = photon.wi.Decode();
-    if (!IsOnSameSurface(site, position, distanceSquared, photon.normal.Decode(), wi)) return;
-    // Photons are dense by |ng.wi|, and Eval has the shading normal's cosine.
+    const PhotonPlace place{position, distanceSquared, photon.normal.Decode(), wi};
+    if (!sum.Takes(place)) return;
+    // Eval has the shading normal's cosine.
     const float cosine = AbsDot(hit.ng, wi);
-    if (cosine > 0)
-      sum += point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux * (kernel(distanceSquared) / cosine);
+    if (cosine > 0) sum.Add(place, point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux, cosine);
   });
-  if (!sum.IsBlack()) sum *= InverseCoverage(*scene_, hit, site, options_.kernel, point.seed, &stats.probeRays);
-  return Finite(sum, &stats.nonFinite, [&] { return SourceOfGather(*scene_, map, radius, hit, point.bsdf); });
+  const PathEstimate estimate = sum.Estimate(*scene_, point.seed, &stats.probeRays);
+  return {Finite(estimate.radiance, &stats.nonFinite,
+                 [&] { return SourceOfGather(*scene_, map, radius, hit, point.bsdf); }),
+          estimate.blur};
 }
 
 }  // namespace dapple

@@ -13,6 +13,7 @@
 
 #include "integrators/camera_path.h"
 #include "integrators/photon_shooting.h"
+#include "integrators/pixel_loop.h"
 #include "src/base/octahedral.h"
 #include "src/photons/photon_map.h"
 
@@ -23,6 +24,7 @@ class PhotonGatherer : public Integrator {
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
   PreparationUse Preparation() const override;
+  bool EstimatesDensity() const override { return true; }
   int DefaultPasses() const override { return 64; }
 
  protected:
@@ -51,8 +53,9 @@ class PhotonGatherer : public Integrator {
     Map caustics;        ///< empty where they have not
     float weight;        ///< 1 / light paths of the pass
     float radiusFactor;  ///< on the starting radii
+    bool tracksBlur;     ///< gathers with half the radius too
   };
-  PhotonPass TracePhotons(int pass, PassStats* stats) const;
+  PhotonPass TracePhotons(int pass, bool tracksBlur, PassStats* stats) const;
 
   /// A surface on a camera path that gathers.
   struct GatherPoint {
@@ -62,9 +65,9 @@ class PhotonGatherer : public Integrator {
     bool causticsOnly;
     uint64_t seed;  ///< of the coverage's probes
   };
-  Color Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const;
-  Color Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const;
-  Color Gather(const Map& map, float radius, const GatherPoint& point, PassStats& stats) const;
+  PathEstimate Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const;
+  PathEstimate Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const;
+  PathEstimate Gather(const Map& map, float radius, bool tracksBlur, const GatherPoint& point, PassStats& stats) const;
 
   IntegratorOptions options_;
   Rules rules_;

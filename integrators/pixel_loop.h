@@ -19,9 +19,17 @@ inline Color FiniteSample(const Color& value, PassStats& stats) {
   return Finite(value, &stats.nonFinite, [] { return NonFiniteSource::Integrator(); });
 }
 
+/// What a camera path finds.
+struct PathEstimate {
+  PathEstimate(const Color& found, const Color& foundBlur = Color()) : radiance(found), blur(foundBlur) {}
+
+  Color radiance;
+  Color blur;  ///< by how much that exceeds what gathers of half the radius give (`Film::AddBlur`)
+};
+
 /// Adds an estimate of each pixel of the film's crop: the mean over `samples` camera paths of
 /// `radiance(camera, sampler, stats)`, where block 0 of the sampler is used up.
 PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,
-                       const std::function<Color(const CameraRay&, Sampler&, PassStats&)>& radiance, Film& film);
+                       const std::function<PathEstimate(const CameraRay&, Sampler&, PassStats&)>& radiance, Film& film);
 
 }  // namespace dapple

@@ -47,6 +47,13 @@ std::string FormatDuration(double seconds) {
   return fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60);
 }
 
+std::string FormatError(const ErrorEstimate& error, bool isBiasKnown) {
+  const auto percent = [](double share) { return fmt::format("{:.3g} %", 100 * share); };
+  if (!isBiasKnown) return fmt::format("noise about {}", percent(error.noise));
+  return fmt::format("error about {} (noise {}, bias {})", percent(error.Total()), percent(error.noise),
+                     percent(error.bias));
+}
+
 void Tell(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
 
 std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view many) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "src/render/error_estimate.h"
+
 namespace dapple {
 
 /// "0", "812", "12.3 k", "4.56 M": three digits and a prefix; `value` >= 0.
@@ -17,6 +19,9 @@ std::string FormatDuration(double seconds);
 
 /// "812 B", "4.56 MB" (powers of 1000).
 std::string FormatBytes(double bytes);
+
+/// "error about 3.42 % (noise 3.1 %, bias 1.4 %)", or without its bias "noise about 3.42 %".
+std::string FormatError(const ErrorEstimate& error, bool isBiasKnown);
 
 /// "1 pass", "2 passes".
 std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view many);

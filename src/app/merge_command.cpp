@@ -35,7 +35,8 @@ int RunMerge(const MergeOptions& options) {
   for (const std::string& output : options.outputs) fmt::print("{}\n", output);
   fmt::print("passes    {} of {}\n", whole.film.Passes().ToString(),
              FormatNumberOf(static_cast<int64_t>(options.parts.size()), "file", "files"));
-  if (const auto noise = whole.film.NoiseEstimate()) fmt::print("noise     relative MSE about {:.2g}\n", *noise);
+  if (const auto error = EstimateError(whole.film, whole.origin.exposure))
+    fmt::print("accuracy  {}\n", FormatError(*error, whole.film.TracksBlur()));
   return kExitSuccess;
 }
 

@@ -17,8 +17,8 @@ namespace {
 constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kInterval{150};
 
-/// "12 passes, 3.41 M rays/s, 1.20 M photons/s, noise 0.0031, 0:12 left"
-std::string Describe(const RenderProgress& progress) {
+/// "12 passes, 3.41 M rays/s, 1.20 M photons/s, noise about 3.1 %, 0:12 left"
+std::string Describe(const RenderProgress& progress, float exposure) {
   if (progress.passesDone == 0) return "prepared";
   std::string text = FormatNumberOf(progress.passesDone, "pass", "passes");
   const double seconds = std::max(progress.seconds, 1e-9);
@@ -27,7 +27,8 @@ std::string Describe(const RenderProgress& progress) {
     const double photons = static_cast<double>(progress.stats.photonsEmitted);
     text += fmt::format(", {} photons/s", FormatCount(photons / seconds));
   }
-  if (const auto noise = progress.film->NoiseEstimate()) text += fmt::format(", noise {:.2g}", *noise);
+  if (const auto error = EstimateError(*progress.film, exposure))
+    text += ", " + FormatError(*error, progress.film->TracksBlur());
   if (progress.secondsLeft && progress.fraction < 1)
     text += fmt::format(", {} left", FormatDuration(*progress.secondsLeft));
   return text;
@@ -40,7 +41,7 @@ int TerminalWidth() {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay() : isTerminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressDisplay::ProgressDisplay(float exposure) : exposure_(exposure), isTerminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressDisplay::~ProgressDisplay() {
   if (isTerminal_ && lastShown_ != Clock::time_point{}) std::fputc('\n', stderr);
@@ -60,7 +61,8 @@ void ProgressDisplay::ShowBar(const RenderProgress& progress) {
   if (now - lastShown_ < kInterval && progress.fraction < 1) return;
   lastShown_ = now;
   const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
-  std::string line = fmt::format("[{:=<{}}{:{}}] {}", "", filled, "", kBarWidth - filled, Describe(progress));
+  std::string line =
+      fmt::format("[{:=<{}}{:{}}] {}", "", filled, "", kBarWidth - filled, Describe(progress, exposure_));
   line.resize(std::min(line.size(), static_cast<size_t>(TerminalWidth() - 1)));
   std::fputs(fmt::format("\r{}\x1b[K", line).c_str(), stderr);
   std::fflush(stderr);
@@ -71,7 +73,7 @@ void ProgressDisplay::ShowLine(const RenderProgress& progress) {
   // The first pass always has its line: it tells how fast the rest will go.
   if (tenths <= tenthsShown_ && progress.passesDone != 1) return;
   tenthsShown_ = tenths;
-  Tell(fmt::format("{:3} %: {}", tenths * 10, Describe(progress)));
+  Tell(fmt::format("{:3} %: {}", tenths * 10, Describe(progress, exposure_)));
 }
 
 }  // namespace dapple

@@ -11,7 +11,8 @@ namespace dapple {
 /// Writes to the error stream. The bar's line is ended by the destructor, so that what follows begins on its own line.
 class ProgressDisplay {
  public:
-  ProgressDisplay();
+  /// `exposure`: of the picture, whose error is shown.
+  explicit ProgressDisplay(float exposure);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -24,6 +25,7 @@ class ProgressDisplay {
   void ShowBar(const RenderProgress& progress);
   void ShowLine(const RenderProgress& progress);
 
+  float exposure_;
   bool isTerminal_;
   Clock::time_point lastShown_{};
   int tenthsShown_ = 0;

@@ -34,6 +34,7 @@ struct RenderOptions : SceneOptions {
   std::vector<std::string> outputs;
   std::string statistics;
   AovSet aovs;
+  std::optional<double> error;  ///< at which the render ends
   std::optional<double> checkpointSeconds;
   bool resumes = false;
   std::optional<SnapshotSchedule> snapshots;
@@ -72,7 +73,8 @@ void PrintNeeds(const RenderNeeds& needs, const PassStats& stats) {
   fmt::print("\n");
 }
 
-void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Film& film) {
+void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Film& film,
+                  const std::optional<ErrorEstimate>& error) {
   const PassStats& stats = result.stats;
   const auto count = [](int64_t n) { return FormatCount(static_cast<double>(n)); };
   fmt::print("{} in {} (of which preparation {})\n", FormatNumberOf(result.passes, "pass", "passes"),
@@ -90,7 +92,7 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
                static_cast<double>(stats.photonsGathered) / static_cast<double>(stats.gathers));
   }
   if (stats.splats > 0) fmt::print("splats    {}\n", count(stats.splats));
-  if (const auto noise = film.NoiseEstimate()) fmt::print("noise     relative MSE about {:.2g}\n", *noise);
+  if (error) fmt::print("accuracy  {}\n", FormatError(*error, film.TracksBlur()));
   PrintNeeds(needs, stats);
   fmt::print("memory    {} at its peak\n", FormatBytes(static_cast<double>(PeakMemoryBytes())));
 }
@@ -117,17 +119,24 @@ RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded,
   return origin;
 }
 
-Film EmptyFilm(const RenderOptions& options, const RenderSettings& settings) {
+/// Whether the bias of density estimates is to be known.
+bool TracksBlur(const RenderOptions& options, const RenderPlan& plan) {
+  return options.error && plan.integrator->EstimatesDensity();
+}
+
+Film EmptyFilm(const RenderOptions& options, const RenderSettings& settings, const RenderPlan& plan) {
   Film film(settings.resolution, settings.crop, settings.filter);
   if (options.clamp) film.ClampTo(*options.clamp);
   if (const auto channels = FilmChannels(options.aovs); !channels.empty()) film.AddExtraChannels(channels);
+  if (TracksBlur(options, plan)) film.TrackBlur();
   return film;
 }
 
 void CheckMemory(const RenderOptions& options, const Scene& scene, const RenderPlan& plan) {
   if (!options.memoryLimit) return;
   const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
-  const MemoryNeeds needs = EstimateMemory(scene, options.aovs, plan.choice.name, plan.options, seed);
+  const MemoryNeeds needs =
+      EstimateMemory(scene, options.aovs, plan.choice.name, plan.options, seed, TracksBlur(options, plan));
   RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs);
 }
 
@@ -153,7 +162,7 @@ class BetweenPasses {
         memoryLimit_(options.memoryLimit),
         outputs_(options.outputs) {
     std::erase_if(outputs_, IsStateName);
-    if (!options.isQuiet) display_.emplace();
+    if (!options.isQuiet) display_.emplace(origin.exposure);
   }
 
   void operator()(const RenderProgress& progress) {
@@ -211,11 +220,20 @@ bool SaveCheckpoint(Checkpoint& checkpoint, const Film& film, double seconds) {
   }
 }
 
-RenderRecord MakeRecord(const RenderOptions& options, const RenderOrigin& origin, double seconds, const Film& film) {
+RenderRecord MakeRecord(const RenderOptions& options, const RenderOrigin& origin, double seconds, const Film& film,
+                        const std::optional<ErrorEstimate>& error) {
   RenderRecord record = origin.record;
   record.passes = static_cast<int>(film.PassCount());
   if (options.seconds || options.recordsSeconds) record.seconds = seconds;
+  if (options.error && error) record.error = error->Total();
   return record;
+}
+
+/// A picture that is not as good as was asked for must not go unnoticed.
+void WarnOfError(const RenderOptions& options, const std::optional<ErrorEstimate>& error) {
+  if (!options.error || (error && error->Total() < *options.error)) return;
+  Tell(error ? fmt::format("warning: the error is about {:.3g}, not below {:g}", error->Total(), *options.error)
+             : "warning: the error of a single pass cannot be estimated");
 }
 
 /// Writes all that was asked for, and says how to go on where a signal ended the render; returns the exit code.
@@ -228,13 +246,15 @@ int Finish(const RenderOptions& options, const RenderOrigin& origin, const Rende
   // The checkpoint first: what is in it can be rendered no faster a second time.
   const bool savesState = options.checkpointSeconds || options.resumes || result.stopped;
   const bool isSaved = !savesState || SaveCheckpoint(checkpoint, film, result.seconds);
-  const RenderRecord record = MakeRecord(options, origin, checkpoint.SecondsBefore() + result.seconds, film);
+  const std::optional<ErrorEstimate> error = EstimateError(film, origin.exposure);
+  const RenderRecord record = MakeRecord(options, origin, checkpoint.SecondsBefore() + result.seconds, film, error);
   WriteRenderOutputs(options.outputs, origin, record, film);
   if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
   if (!options.statistics.empty())
     WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film, scene));
   WarnOfNonFinite(film, result.stats.nonFinite, scene);
-  if (!options.isQuiet) PrintSummary(result, needs, film);
+  WarnOfError(options, error);
+  if (!options.isQuiet) PrintSummary(result, needs, film, error);
   if (result.stopped && isSaved) {
     Tell(fmt::format("stopped after {}; to go on, give the same command with --resume (it reads {})",
                      FormatNumberOf(film.PassCount(), "pass", "passes"), checkpoint.Path()));
@@ -255,12 +275,15 @@ int RunRender(RenderOptions options) {
     CheckRenderOutput(options.outputs[0]);
   }
   RequireFilm(scene.Settings(), options.aovs, MachineMemoryBytes());
-  const RenderPlan plan = MakePlan(scene, options, diagnostics);
+  RenderPlan plan = MakePlan(scene, options, diagnostics);
+  plan.budget.error = options.error;
+  // What the scene's file says bounds no one who asks for an error.
+  if (options.error && !options.passes) plan.budget.passes.reset();
   if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
   }
   CheckMemory(options, scene, plan);
-  Film film = EmptyFilm(options, scene.Settings());
+  Film film = EmptyFilm(options, scene.Settings(), plan);
   const RenderOrigin origin = MakeOrigin(options, loaded, plan, film);
   Checkpoint checkpoint(Checkpoint::PathFor(options.outputs[0]), origin, options.checkpointSeconds);
   const StopSignals signals;
@@ -296,6 +319,18 @@ AovSet ParseAovOption(const std::string& text) {
   if (aovs && !text.empty()) return *aovs;
   throw CLI::ValidationError("--aov",
                              fmt::format("expected some of albedo,normal,depth,position,variance, not '{}'", text));
+}
+
+void AddErrorOption(CLI::App* command, RenderOptions* options) {
+  command
+      ->add_option("--error", options->error,
+                   "Render until the estimated relative error, noise and bias together, is below E (0.01: one per "
+                   "cent), or to --passes or --time. It is the root of the relative MSE that `dapple compare` would "
+                   "measure against the converged picture; what the algorithm cannot find is not in it")
+      ->check(CheckPositive)
+      ->excludes("--clamp")
+      ->type_name("E")
+      ->group(command->get_option("--passes")->get_group());
 }
 
 /// What a render leaves behind, beside the picture.
@@ -348,6 +383,7 @@ void AddRenderCommand(CLI::App& program, Action* action) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   options->AddTo(command);
+  AddErrorOption(command, options.get());
   AddFilesGroup(command, options.get());
   command
       ->add_option_function<std::string>(
@@ -356,7 +392,11 @@ void AddRenderCommand(CLI::App& program, Action* action) {
           "start, and says what takes how much")
       ->type_name("LIMIT");
   command->add_flag("--quiet", options->isQuiet, "No progress and no summary; warnings and errors only");
-  command->callback([options, action] { *action = [options] { return RunRender(*options); }; });
+  command->callback([options, action] {
+    if (options->error && options->isPart)
+      throw CLI::ValidationError("--error", "it is of the whole picture, not of a range of passes");
+    *action = [options] { return RunRender(*options); };
+  });
 }
 
 }  // namespace dapple

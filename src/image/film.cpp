@@ -14,7 +14,8 @@ namespace dapple {
 namespace {
 
 // What stands first in a serialised film; the ranges of its passes follow, the names of the extra channels with a line
-// end behind each, the sums of both halves, and those of the extra channels. All little-endian, as memory is here.
+// end behind each, the sums of both halves, those of their blurs, and those of the extra channels. All little-endian,
+// as memory is here.
 struct FilmHeader {
   char mark[8];
   uint32_t version;
@@ -26,13 +27,15 @@ struct FilmHeader {
   uint64_t nonFinite;
   uint32_t extraNameBytes;
   float clamp;  // 0: none
+  uint32_t tracksBlur;
+  uint32_t unused;
 };
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(PassRange) == 16 && std::is_trivially_copyable_v<PassRange>);
-static_assert(sizeof(FilmHeader) == 96 && std::is_trivially_copyable_v<FilmHeader>);
+static_assert(sizeof(FilmHeader) == 104 && std::is_trivially_copyable_v<FilmHeader>);
 
 constexpr char kMark[8] = {'D', 'A', 'P', 'P', 'L', 'E', 'F', 'M'};
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 // The most pixels that a filter can touch along one axis: its radius is at most 64.
 constexpr int kMaxFootprint = 130;
@@ -119,6 +122,15 @@ void Film::AddExtraChannels(const std::vector<std::string>& names) {
     throw Error(fmt::format("not enough memory for {} extra channels of {} pixels", names.size(), crop_.Area()));
   }
   extraChannels_ = names;
+}
+
+void Film::TrackBlur() {
+  assert(passes_.IsEmpty() && !TracksBlur());
+  try {
+    for (auto& blurs : blurs_) blurs.resize(sums_[0].size());
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("not enough memory to estimate the error of {} pixels", crop_.Area()));
+  }
 }
 
 void Film::AddExtras(const Vec2i& pixel, std::span<const float> values) {
@@ -214,31 +226,25 @@ Image Film::HalfImage(int half) const {
   return MakeImage(PassCount(half), [&](size_t i) { return sums_[half][i]; });
 }
 
-std::optional<double> Film::NoiseEstimate() const {
-  if (PassCount(0) == 0 || PassCount(1) == 0) return std::nullopt;
-  const double n0 = static_cast<double>(PassCount(0)), n1 = static_cast<double>(PassCount(1));
-  const double varianceFactor = n0 * n1 / Sqr(n0 + n1);
-  double sum = 0;
-  for (size_t i = 0; i < sums_[0].size(); ++i) {
-    for (int c = 0; c < Color::kComponents; ++c) {
-      const double sum0 = sums_[0][i][c].ToDouble(), sum1 = sums_[1][i][c].ToDouble();
-      const double variance = Sqr(sum0 / n0 - sum1 / n1) * varianceFactor;
-      sum += variance / (Sqr((sum0 + sum1) / (n0 + n1)) + 0.01);
-    }
-  }
-  return sum / static_cast<double>(sums_[0].size() * Color::kComponents);
+Image Film::BlurImage(int half) const {
+  assert(TracksBlur() && (half == 0 || half == 1));
+  return MakeImage(PassCount(half), [&](size_t i) { return blurs_[half][i]; });
 }
 
 void Film::Merge(const Film& other) {
   if (fullResolution_ != other.fullResolution_ || crop_ != other.crop_ || !(filter_ == other.filter_) ||
-      clamp_ != other.clamp_ || extraChannels_ != other.extraChannels_)
-    throw Error("cannot add films that differ: expected the same resolution, crop, filter, clamp and extra channels");
+      clamp_ != other.clamp_ || extraChannels_ != other.extraChannels_ || TracksBlur() != other.TracksBlur())
+    throw Error("cannot add films that differ: expected the same resolution, crop, filter, clamp and channels");
   if (const auto common = passes_.FirstCommon(other.passes_))
     throw Error(fmt::format("cannot add films that both hold {}", common->ToString()));
   for (const PassRange& range : other.passes_.All()) passes_.Add(range);
+  const auto add = [](std::vector<PixelSums>& to, const std::vector<PixelSums>& from) {
+    for (size_t i = 0; i < to.size(); ++i)
+      for (int c = 0; c < Color::kComponents; ++c) to[i][c] += from[i][c];
+  };
   for (size_t half = 0; half < sums_.size(); ++half) {
-    for (size_t i = 0; i < sums_[half].size(); ++i)
-      for (int c = 0; c < Color::kComponents; ++c) sums_[half][i][c] += other.sums_[half][i][c];
+    add(sums_[half], other.sums_[half]);
+    add(blurs_[half], other.blurs_[half]);
   }
   for (size_t i = 0; i < extras_.size(); ++i) extras_[i] += other.extras_[i];
   nonFinite_ += other.nonFinite_;
@@ -271,9 +277,11 @@ std::vector<std::byte> Film::Serialize() const {
   const std::string names = ExtraNames();
   header.extraNameBytes = static_cast<uint32_t>(names.size());
   header.clamp = clamp_.value_or(0);
+  header.tracksBlur = TracksBlur() ? 1 : 0;
   const std::vector<PassRange>& ranges = passes_.All();
   std::vector<std::byte> bytes(sizeof(header) + ranges.size() * sizeof(PassRange) + names.size() +
-                               2 * sums_[0].size() * sizeof(PixelSums) + extras_.size() * sizeof(FixedPoint));
+                               2 * (sums_[0].size() + blurs_[0].size()) * sizeof(PixelSums) +
+                               extras_.size() * sizeof(FixedPoint));
   size_t end = 0;
   const auto append = [&](std::span<const std::byte> piece) {
     if (!piece.empty()) std::memcpy(bytes.data() + end, piece.data(), piece.size());
@@ -283,6 +291,7 @@ std::vector<std::byte> Film::Serialize() const {
   append(std::as_bytes(std::span(ranges)));
   append(std::as_bytes(std::span(names)));
   for (const auto& sums : sums_) append(std::as_bytes(std::span(sums)));
+  for (const auto& blurs : blurs_) append(std::as_bytes(std::span(blurs)));
   append(std::as_bytes(std::span(extras_)));
   return bytes;
 }
@@ -309,7 +318,8 @@ Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& loc
   const std::span<const std::byte> names = take(header.extraNameBytes);
   const auto extraChannels = SplitLines({reinterpret_cast<const char*>(names.data()), names.size()});
   const auto pixels = static_cast<size_t>(crop.Area());
-  const size_t sumBytes = pixels * (2 * sizeof(PixelSums) + extraChannels.size() * sizeof(FixedPoint));
+  const size_t images = header.tracksBlur != 0 ? 4 : 2;
+  const size_t sumBytes = pixels * (images * sizeof(PixelSums) + extraChannels.size() * sizeof(FixedPoint));
   if (rest.size() != sumBytes)
     throw Error(location, fmt::format("stored film with {} bytes of sums, expected {}", rest.size(), sumBytes));
   const Filter filter = Filter::FromDescription(
@@ -317,11 +327,13 @@ Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& loc
   Film film(resolution, crop, filter, location);
   if (header.clamp > 0) film.ClampTo(header.clamp);
   if (!extraChannels.empty()) film.AddExtraChannels(extraChannels);
+  if (header.tracksBlur != 0) film.TrackBlur();
   const auto read = [&](auto& sums) {
     const std::span<const std::byte> from = take(std::as_bytes(std::span(sums)).size());
     if (!from.empty()) std::memcpy(sums.data(), from.data(), from.size());
   };
   for (auto& sums : film.sums_) read(sums);
+  for (auto& blurs : film.blurs_) read(blurs);
   read(film.extras_);
   film.passes_ = passes;
   film.nonFinite_ = header.nonFinite;

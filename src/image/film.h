@@ -10,7 +10,7 @@
 //   film.FinishPass(pass);
 //
 // Beside the radiance a film may have extra channels, whose means are over all samples of all passes, in exact sums
-// too.
+// too; and, where the error is to be estimated, what gathers with half the radius make of each pixel less.
 #pragma once
 
 #include <algorithm>
@@ -89,12 +89,22 @@ class Film {
   /// dark.
   Imath::Box2d SplatBounds() const;
 
+  /// Has integrators that estimate densities add their blur (`AddBlur`); 96 bytes a pixel. Once, before the first pass.
+  /// Throws `Error` where the memory does not suffice.
+  void TrackBlur();
+  bool TracksBlur() const { return !blurs_[0].empty(); }
+
   /// Adds to `pixel` (inside the crop) in the sum of `pass`. One sample of n in a pass carries the weight 1/n.
   /// Not atomic: one thread owns a pixel at a time, and no splats are added meanwhile.
   void AddSample(const Vec2i& pixel, const Color& value, int64_t pass);
 
   /// Adds to the pixel's extra channels, one value each. As `AddSample`, but all passes have one sum.
   void AddExtras(const Vec2i& pixel, std::span<const float> values);
+
+  /// Adds by how much the value of a sample exceeds that of the same sample whose gathers have half the radius: in
+  /// expectation a share of what their width spoils (see error_estimate.h). As `AddSample`, but never clamped. What is
+  /// not in range is left out, and not counted: the sample was. Only where blur is tracked.
+  void AddBlur(const Vec2i& pixel, const Color& value, int64_t pass);
 
   /// Spreads `value` over the pixels around `position` (pixel (x, y) covers [x, x+1) x [y, y+1)) with the filter's
   /// normalised weights f(centre - position) / integral, per unit of image area in pixels. Any thread may call it at
@@ -119,14 +129,10 @@ class Film {
   Image ExtraImage() const;
   /// The mean of the even (0) or odd (1) passes alone.
   Image HalfImage(int half) const;
-  /// Estimates the relative MSE of `ToImage` that is due to noise (bias is not seen): the mean over pixels and channels
-  /// of
-  ///   (h0 - h1)^2 n0 n1 / (n0 + n1)^2 / (m^2 + 0.01)
-  /// where h are the half-images, n their passes, and m is the image. The numerator's expectation is the variance of m
-  /// if passes are independent, and for n0 = n1 whenever the halves are. Nothing before both halves have a pass.
-  std::optional<double> NoiseEstimate() const;
+  /// The mean blur of the even (0) or odd (1) passes; only where it is tracked.
+  Image BlurImage(int half) const;
 
-  /// Adds the sums and passes of another film of the same resolution, crop, filter, clamp and extra channels, exactly.
+  /// Adds the sums and passes of another film of the same resolution, crop, filter, clamp and channels, exactly.
   /// Throws `Error` where they differ, or where a pass is in both.
   void Merge(const Film& other);
 
@@ -148,6 +154,12 @@ class Film {
   }
   /// `value`, scaled down where it is beyond the clamp.
   Color Clamped(const Color& value) const;
+  static bool IsInRange(const Color& value) {
+    return FixedPoint::IsInRange(value.r) && FixedPoint::IsInRange(value.g) && FixedPoint::IsInRange(value.b);
+  }
+  static void AddInRange(PixelSums& sums, const Color& value) {
+    for (int c = 0; c < Color::kComponents; ++c) sums[c] += FixedPoint::FromFloat(value[c]);
+  }
   void Add(PixelSums& sums, const Color& value);
   template <typename F>
   void ForEachLockedTile(const PixelBounds& pixels, F addToPixels);
@@ -161,8 +173,8 @@ class Film {
   Filter filter_;
   std::optional<float> clamp_;
   std::vector<std::string> extraChannels_;
-  std::array<std::vector<PixelSums>, 2> sums_;
-  std::vector<FixedPoint> extras_;  // pixels in rows, channels interleaved
+  std::array<std::vector<PixelSums>, 2> sums_, blurs_;  // blurs: empty where they are not tracked
+  std::vector<FixedPoint> extras_;                      // pixels in rows, channels interleaved
   PassRanges passes_;
   uint64_t nonFinite_ = 0;
   std::vector<uint8_t> tileLocks_;  // one for each kTileSide x kTileSide pixels; 1 while a splat is added there
@@ -198,14 +210,19 @@ inline Color Film::Clamped(const Color& value) const {
 }
 
 inline void Film::Add(PixelSums& sums, const Color& value) {
-  if (!(FixedPoint::IsInRange(value.r) && FixedPoint::IsInRange(value.g) && FixedPoint::IsInRange(value.b)))
-    return Refuse();
-  for (int c = 0; c < Color::kComponents; ++c) sums[c] += FixedPoint::FromFloat(value[c]);
+  if (!IsInRange(value)) return Refuse();
+  AddInRange(sums, value);
 }
 
 inline void Film::AddSample(const Vec2i& pixel, const Color& value, int64_t pass) {
   assert(crop_.Contains(pixel));
   Add(sums_[HalfOf(pass)][Index(pixel.x, pixel.y)], Clamped(value));
+}
+
+inline void Film::AddBlur(const Vec2i& pixel, const Color& value, int64_t pass) {
+  assert(crop_.Contains(pixel) && TracksBlur());
+  if (!IsInRange(value)) return;
+  AddInRange(blurs_[HalfOf(pass)][Index(pixel.x, pixel.y)], value);
 }
 
 }  // namespace dapple

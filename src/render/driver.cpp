@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "src/base/numerics.h"
 #include "src/render/aov.h"
 
 namespace dapple {
@@ -43,6 +44,25 @@ class PassClock {
   double last_ = 0, previous_ = 0, total_ = 0;
 };
 
+/// Looks at the error of a film whenever that is due.
+class ErrorWatch {
+ public:
+  ErrorWatch(std::optional<double> wanted, float exposure) : wanted_(wanted), exposure_(exposure) {}
+
+  void Look(const Film& film) {
+    if (wanted_ && IsErrorDue(static_cast<int>(film.PassCount()))) last_ = EstimateError(film, exposure_);
+  }
+  const std::optional<ErrorEstimate>& Last() const { return last_; }
+  bool IsReached() const { return last_ && last_->Total() < *wanted_; }
+  /// Of the way, in [0, 1], if the square of the error falls as 1 / passes.
+  double Fraction() const { return last_ ? std::min(1., Sqr(*wanted_ / last_->Total())) : 0; }
+
+ private:
+  std::optional<double> wanted_;
+  float exposure_;
+  std::optional<ErrorEstimate> last_;
+};
+
 /// The first pass of the budget that the film does not hold.
 int NextPass(const RenderBudget& budget, const Film& film) {
   const PassRange andOn{budget.firstPass, std::numeric_limits<int>::max()};
@@ -67,14 +87,16 @@ bool IsSpent(const RenderBudget& budget, int passesInFilm, double elapsed, const
 }
 
 RenderProgress Measure(const RenderBudget& budget, const Film& film, double elapsed, const PassClock& clock,
-                       const PassStats& stats) {
+                       const ErrorWatch& error, const PassStats& stats) {
   RenderProgress progress;
   progress.passesDone = static_cast<int>(film.PassCount());
   progress.seconds = elapsed;
   progress.stats = stats;
   progress.film = &film;
+  progress.error = error.Last();
+  progress.fraction = error.Fraction();
   if (budget.passes) {
-    progress.fraction = static_cast<double>(progress.passesDone) / *budget.passes;
+    progress.fraction = std::max(progress.fraction, static_cast<double>(progress.passesDone) / *budget.passes);
     if (clock.Passes() > 0) progress.secondsLeft = clock.Mean() * std::max(0, *budget.passes - progress.passesDone);
   }
   if (budget.seconds) {
@@ -90,21 +112,23 @@ RenderProgress Measure(const RenderBudget& budget, const Film& film, double elap
 
 RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, Film& film, const RenderBudget& budget,
                     const RenderHooks& hooks) {
-  assert(budget.passes || budget.seconds);
+  assert(budget.passes || budget.seconds || budget.error);
   const Stopwatch watch;
   PassClock clock;
+  ErrorWatch error(budget.error, scene.Settings().exposure);
   RenderResult result;
   const auto report = [&] {
-    if (hooks.onProgress) hooks.onProgress(Measure(budget, film, watch.Seconds(), clock, result.stats));
+    if (hooks.onProgress) hooks.onProgress(Measure(budget, film, watch.Seconds(), clock, error, result.stats));
   };
 
   WithinMemory("the preparation", [&] { integrator.Prepare(scene, seed); });
   result.prepareSeconds = watch.Seconds();
+  error.Look(film);
   report();
   while (true) {
     const int passesBefore = static_cast<int>(film.PassCount());
     const double begin = watch.Seconds();
-    if (IsSpent(budget, passesBefore, begin, clock)) break;
+    if (error.IsReached() || IsSpent(budget, passesBefore, begin, clock)) break;
     if (IsStopAsked(hooks)) {
       result.stopped = true;
       break;
@@ -119,6 +143,7 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
     assert(film.PassCount() == passesBefore + 1);
     ++result.passes;
     clock.Add(watch.Seconds() - begin);
+    error.Look(film);
     report();
   }
   result.seconds = watch.Seconds();

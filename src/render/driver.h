@@ -15,12 +15,13 @@
 
 #include "integrators/integrator.h"
 #include "src/image/film.h"
+#include "src/render/error_estimate.h"
 #include "src/scene/scene.h"
 
 namespace dapple {
 
-/// Which passes are rendered. A render ends when they are all there or the time is up, whichever is first; at least
-/// one of the two must be set.
+/// Which passes are rendered. A render ends when they are all there, the time is up or the error is small enough,
+/// whichever is first; at least one of the three must be set.
 struct RenderBudget {
   /// Passes that the film shall hold in the end, >= 1: `firstPass` to firstPass + passes - 1.
   std::optional<int> passes;
@@ -29,16 +30,21 @@ struct RenderBudget {
   /// pass.
   std::optional<double> seconds;
   int firstPass = 0;  ///< >= 0; other than 0 where a render is split into ranges of passes
+  /// What the estimated error (error_estimate.h) is to fall below, > 0. It is looked at where `IsErrorDue` says so, so
+  /// the number of passes does not depend on time or threads. The film should track the blur of an integrator that
+  /// estimates densities.
+  std::optional<double> error = std::nullopt;
 };
 
 /// Where a render stands.
 struct RenderProgress {
-  int passesDone = 0;                 ///< in the film
-  double seconds = 0;                 ///< since the beginning of the preparation
-  std::optional<double> secondsLeft;  ///< estimated from the passes so far; nothing before the first
-  double fraction = 0;                ///< of the budget that is spent, in [0, 1]
-  PassStats stats;                    ///< of this render's passes
-  const Film* film = nullptr;         ///< for what the watcher wants to know of it (noise, a snapshot); between passes
+  int passesDone = 0;                  ///< in the film
+  double seconds = 0;                  ///< since the beginning of the preparation
+  std::optional<double> secondsLeft;   ///< estimated from the passes so far; nothing before the first
+  double fraction = 0;                 ///< of the budget that is spent, in [0, 1]
+  PassStats stats;                     ///< of this render's passes
+  const Film* film = nullptr;          ///< for what the watcher wants to know of it (noise, a snapshot); between passes
+  std::optional<ErrorEstimate> error;  ///< when it was looked at last, where the budget has one
 };
 
 /// How the caller watches and stops a render.

@@ -63,12 +63,13 @@ void RequireFilm(const RenderSettings& settings, const AovSet& aovs, int64_t ava
 }
 
 MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
-                           const IntegratorOptions& options, uint64_t seed) {
+                           const IntegratorOptions& options, uint64_t seed, bool tracksBlur) {
   MemoryNeeds needs;
   const int64_t pixels = scene.Settings().crop.Area();
   const auto extras = static_cast<int64_t>(FilmChannels(aovs).size());
   const int64_t channels = extras + Color::kComponents * (aovs.variance ? 2 : 1);
   needs.film = FilmBytes(scene.Settings(), aovs);
+  if (tracksBlur) needs.film += pixels * static_cast<int64_t>(sizeof(FixedPoint)) * 2 * Color::kComponents;
   needs.files = std::max(needs.film, pixels * channels * static_cast<int64_t>(sizeof(float)) * kCopiesOfPicture);
   if (StoresPhotons(integrator)) {
     const double perPath = PhotonsOfAPath(scene, options.maxDepth, seed);

@@ -26,9 +26,9 @@ struct MemoryNeeds {
 /// `available` bytes.
 void RequireFilm(const RenderSettings& settings, const AovSet& aovs, int64_t available);
 
-/// What a light path leaves of photons is counted on a few thousand paths.
+/// What a light path leaves of photons is counted on a few thousand paths. `tracksBlur`: by the film, for the error.
 MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
-                           const IntegratorOptions& options, uint64_t seed);
+                           const IntegratorOptions& options, uint64_t seed, bool tracksBlur = false);
 
 /// Throws `Error` where the needs and what is in use already are more than the limit: it says what takes how much, and
 /// how many photons a pass would fit.

@@ -33,6 +33,7 @@ ImageMetadata ToMetadata(const RenderRecord& record) {
       {"passes", record.passes}, {"version", record.version},       {"instructionSet", record.instructionSet},
   };
   if (record.seconds) metadata["seconds"] = *record.seconds;
+  if (record.error) metadata["error"] = *record.error;
   if (record.clamp) metadata["clamp"] = double{*record.clamp};
   return metadata;
 }

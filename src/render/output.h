@@ -24,6 +24,7 @@ struct RenderRecord {
   int passes = 0;
   std::optional<double> seconds;  ///< of the render
   std::optional<float> clamp;     ///< `Film::Clamp`
+  std::optional<double> error;    ///< estimated (error_estimate.h), where the render was to stop by it
   std::string version = Version();
   std::string instructionSet = InstructionSet();
 };

@@ -36,6 +36,7 @@ RenderIdentity MakeIdentity(const std::string& sceneHash, const Film& film, cons
       {"crop", fmt::format("{},{},{},{}", crop.min.x, crop.max.x, crop.min.y, crop.max.y)},
       {"clamp", film.Clamp() ? fmt::format("{}", *film.Clamp()) : "none"},
       {"aov", ToString(aovs)},
+      {"estimate of bias", film.TracksBlur() ? "on" : "off"},
       {"integrator", integrator},
       {"seed", fmt::format("{}", seed)},
   }};

@@ -45,11 +45,14 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
       {"geometry", {{"bytes", scene.geometryBytes}}},
       {"nonFinite", film.NonFiniteCount()},
       {"nonFiniteSources", nlohmann::ordered_json::object()},
-      {"noise", nullptr},
+      {"error", nullptr},
   };
   for (const auto& [source, count] : stats.nonFinite.BySource())
     json["nonFiniteSources"][NameOf(source, renderedScene)] = count;
-  if (const auto noise = film.NoiseEstimate()) json["noise"] = *noise;
+  if (const auto error = EstimateError(film, renderedScene.Settings().exposure)) {
+    json["error"] = {{"total", error->Total()}, {"noise", error->noise}, {"bias", nullptr}};
+    if (film.TracksBlur()) json["error"]["bias"] = error->bias;
+  }
   return json.dump(2) + "\n";
 }
 

@@ -19,8 +19,8 @@ struct RenderNeeds {
 /// photons within reach), "splats", "tables" (how many of the environment, of other lights, of the choice among lights,
 /// of what pilots learned; bytes of all), "textures" (image files opened, bytes that are kept), "geometry" (bytes),
 /// "nonFinite" (contributions left out), "nonFiniteSources" (how many of these, of the passes of this run, each light,
-/// material or the integrator gave) and "noise" (estimated relative MSE; null before two passes). Ends with a
-/// line end.
+/// material or the integrator gave) and "error" (estimated, as error_estimate.h says: total, noise and bias, which is
+/// null where the film does not track it; null before two passes). Ends with a line end.
 std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const RenderNeeds& needs,
                              const Film& film, const Scene& scene);
 

@@ -239,28 +239,6 @@ TEST(Film, ImagesAreMeansOfTheirPasses) {
   EXPECT_EQ(film.ToImage().Width(), 8);
 }
 
-// Independent noise of known variance: the estimate is its expectation within five standard deviations of itself.
-TEST(Film, NoiseEstimateIsTheVarianceOfTheMean) {
-  constexpr int kSide = 64;
-  for (const int passes : {2, 3, 8}) {
-    Film film({kSide, kSide}, {{0, 0}, {kSide, kSide}}, Filter::Box());
-    EXPECT_FALSE(film.NoiseEstimate().has_value());
-    for (int pass = 0; pass < passes; ++pass) {
-      for (int i = 0; i < kSide * kSide; ++i) {
-        const auto value = [&](uint64_t c) {
-          return static_cast<float>(
-              10 + 0.1 * (Uniform(static_cast<uint64_t>(i), 100 * static_cast<uint64_t>(pass) + c) - 0.5));
-        };
-        film.AddSample({i % kSide, i / kSide}, {value(0), value(1), value(2)}, pass);
-      }
-      film.FinishPass(pass);
-    }
-    const double expected = 0.01 / 12 / passes / 100.01;
-    const double deviation = expected * std::sqrt(2. / (3 * kSide * kSide));
-    EXPECT_NEAR(film.NoiseEstimate().value(), expected, 5 * deviation) << passes;
-  }
-}
-
 TEST(Film, StateComesBackFromBytes) {
   Film film = SmallFilm(Filter::Gaussian({2, 1.5}, 1.7));
   for (uint64_t i = 0; i < 100; ++i) film.AddSplat({6, 6}, WildColor(i), static_cast<int64_t>(i));
@@ -314,6 +292,30 @@ TEST(Film, ExtraChannelsAreExactMeansThatAreKeptAndMerged) {
   whole.AddExtras({9, 8}, std::vector<float>{1, std::nanf("")});
   EXPECT_EQ(whole.NonFiniteCount(), 1);
   EXPECT_EQ(whole.ExtraImage().At(7, 5, 0), 1.5f * 0x1p20f) << "all or nothing of a sample";
+  EXPECT_THROW(whole.Merge(SmallFilm()), Error);
+}
+
+TEST(Film, BlurIsKeptAndMergedByHalves) {
+  Film whole = SmallFilm(), first = SmallFilm(), second = SmallFilm();
+  EXPECT_FALSE(whole.TracksBlur());
+  for (Film* film : {&whole, &first, &second}) film->TrackBlur();
+  const auto add = [](Film& film, int pass) {
+    film.AddSample({9, 8}, Color(1), pass);
+    film.AddBlur({9, 8}, Color(pass % 2 == 0 ? 1.f : -0.5f * static_cast<float>(pass)), pass);
+    film.FinishPass(pass);
+  };
+  for (const int pass : {0, 1, 2, 3}) add(whole, pass);
+  for (const int pass : {2, 1}) add(second, pass);
+  for (const int pass : {3, 0}) add(first, pass);
+  first.Merge(second);
+  EXPECT_EQ(first, whole);
+  EXPECT_EQ(Film::Deserialize(whole.Serialize()), whole);
+  EXPECT_EQ(whole.BlurImage(0).ColorAt(7, 5), Color(1));
+  EXPECT_EQ(whole.BlurImage(1).ColorAt(7, 5), Color(-1));
+  EXPECT_EQ(whole.ToImage().ColorAt(7, 5), Color(1)) << "the picture knows nothing of it";
+  whole.AddBlur({9, 8}, Color(INFINITY), 0);
+  EXPECT_EQ(whole.BlurImage(0).ColorAt(7, 5), Color(1));
+  EXPECT_EQ(whole.NonFiniteCount(), 0);
   EXPECT_THROW(whole.Merge(SmallFilm()), Error);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <thread>
@@ -177,6 +178,63 @@ TEST(Driver, TheFirstOfTwoBudgetsEndsTheRender) {
   EXPECT_EQ(Render(scene, 0, few, fewFilm, {.passes = 3, .seconds = 1000}).passes, 3);
   slow.duringPass = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
   EXPECT_LT(Render(scene, 0, slow, slowFilm, {.passes = 1000000, .seconds = 0.03}).passes, 10);
+}
+
+/// Adds 1 to each pixel, and noise that takes turns: even passes are brighter by `noise` / (pass / 2 + 1), odd ones
+/// darker.
+class NoisyIntegrator : public Integrator {
+ public:
+  explicit NoisyIntegrator(float noise) : noise_(noise) {}
+  std::string_view Name() const override { return "noisy"; }
+  void Prepare(const Scene&, uint64_t) override {}
+  PassStats RenderPass(int pass, Film& film) const override {
+    const float offset = noise_ / static_cast<float>(pass / 2 + 1);
+    for (int i = 0; i < 4; ++i) film.AddSample({i % 2, i / 2}, Color(pass % 2 == 0 ? 1 + offset : 1 - offset), pass);
+    film.FinishPass(pass);
+    return {};
+  }
+  int DefaultPasses() const override { return 4; }
+
+ private:
+  float noise_;
+};
+
+/// The error that is estimated of its first passes: the root of the mean of (h0 - h1)^2 / 4 over 1.01.
+double ErrorOfNoisy(double noise, int passes) {
+  double sum = 0;
+  for (int pair = 1; pair <= passes / 2; ++pair) sum += noise / pair;
+  return sum / (passes / 2) / std::sqrt(1.01);
+}
+
+TEST(Driver, EndsAtTheFirstLookThatFindsTheErrorSmallEnough) {
+  const Scene scene = EmptyScene();
+  for (const int last : {8, 10, 24, 28, 40}) {
+    NoisyIntegrator integrator(0.3f);
+    Film film = SmallFilm();
+    RenderBudget budget;
+    budget.error = ErrorOfNoisy(0.3, last) * 1.001;
+    const RenderResult result = Render(scene, 0, integrator, film, budget);
+    EXPECT_EQ(result.passes, last);
+    EXPECT_FALSE(result.stopped);
+    EXPECT_NEAR(EstimateError(film, 1)->Total(), ErrorOfNoisy(0.3, last), 1e-5);
+  }
+}
+
+// A break changes nothing, wherever it is; what is good enough already is left alone; other budgets hold too.
+TEST(Driver, WhereAnErrorEndsARenderDependsOnThePictureAlone) {
+  const Scene scene = EmptyScene();
+  RenderBudget budget;
+  budget.error = ErrorOfNoisy(0.3, 24) * 1.001;
+  for (const int before : {1, 8, 9, 23, 24}) {
+    NoisyIntegrator first(0.3f), second(0.3f);
+    Film film = SmallFilm();
+    Render(scene, 0, first, film, {.passes = before, .seconds = {}});
+    EXPECT_EQ(Render(scene, 0, second, film, budget).passes, 24 - before);
+  }
+  budget.passes = 13;
+  NoisyIntegrator bounded(0.3f);
+  Film film = SmallFilm();
+  EXPECT_EQ(Render(scene, 0, bounded, film, budget).passes, 13);
 }
 
 TEST(Driver, AStopLetsTheRunningPassEnd) {
