@@ -26,7 +26,6 @@ int64_t BalancedLightPaths(const Scene& scene, const PathWork& work) {
 }
 
 /// A power of two.
-/// A power of two as well.
 int BalancedCameraSamples(const Scene& scene, int64_t paths, const PathWork& work) {
   constexpr double kMost = 16;
   const double cameraWork = static_cast<double>(Pixels(scene)) * work.camera;

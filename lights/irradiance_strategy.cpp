@@ -40,8 +40,7 @@ IrradianceStrategy::IrradianceStrategy(const EnvironmentSpace& space) : space_(s
 
 void IrradianceStrategy::FillRows() {
   const Distribution2D& table = space_.map.Density().table;
-  std::vector<double> lights(static_cast<size_t>(groups_.x * groups_.y));
-  rows_.resize(lights.size());
+  rows_.resize(static_cast<size_t>(groups_.x * groups_.y));
   ParallelFor(groups_.y, [&](int64_t y) {
     const int first = static_cast<int>(y) * groupSize_.y, last = std::min(first + groupSize_.y, table.Height());
     for (int x = 0; x < groups_.x; ++x) {
@@ -49,10 +48,8 @@ void IrradianceStrategy::FillRows() {
       std::vector<double> weights;
       for (int row = first; row < last; ++row) weights.push_back(table.RowShare(row, columns.x, columns.y));
       rows_[IndexOf(group)] = Distribution1D(std::span<const double>(weights));
-      lights[IndexOf(group)] = rows_[IndexOf(group)].Sum();
     }
   });
-  byLight_ = Distribution2D(std::span<const double>(lights), groups_.x, groups_.y);
 }
 
 IrradianceStrategy::Cone IrradianceStrategy::ConeOf(const Vec2i& group, const std::vector<double>& cellWeights) const {
@@ -90,7 +87,7 @@ void IrradianceStrategy::FillBins() {
   ParallelFor(groups_.y, [&](int64_t y) {
     for (int x = 0; x < groups_.x; ++x) {
       const Vec2i group(x, static_cast<int>(y));
-      if (byLight_.Probability(group) > 0) cones[IndexOf(group)] = ConeOf(group, cellWeights);
+      if (LightOf(group) > 0) cones[IndexOf(group)] = ConeOf(group, cellWeights);
     }
   });
   bins_.resize(kBinsAcross * kBinsAcross);
@@ -113,8 +110,7 @@ void IrradianceStrategy::FillBins() {
         // No direction is nearer to a normal: above the horizon of some of them there is light while this is.
         const double least = std::max(0.0, angle - normals.radius - light.radius);
         if (least >= kPiD / 2) continue;
-        weights[IndexOf({x, y})] =
-            byLight_.Probability({x, y}) * std::max(std::cos(angle), kLeastShare * std::cos(least));
+        weights[IndexOf({x, y})] = LightOf({x, y}) * std::max(std::cos(angle), kLeastShare * std::cos(least));
       }
     bins_[static_cast<size_t>(index)] = Distribution2D(std::span<const double>(weights), groups_.x, groups_.y);
   });
@@ -143,7 +139,7 @@ double IrradianceStrategy::Pdf(const LightContext& at, const Vec3&, const Enviro
   const Distribution2D* const table = TableFor(at);
   if (!table || byRadiance == 0) return byRadiance;
   const Vec2i group = GroupOf(place.cell);
-  return byRadiance * (table->Probability(group) / byLight_.Probability(group));
+  return byRadiance * (table->Probability(group) / LightOf(group));
 }
 
 LiRandom IrradianceStrategy::Invert(const LightContext& at, const Vec3& wi) const {
@@ -165,7 +161,7 @@ LiRandom IrradianceStrategy::Invert(const LightContext& at, const Vec3& wi) cons
 }
 
 TableUse IrradianceStrategy::Tables() const {
-  int64_t bytes = byLight_.MemoryBytes();
+  int64_t bytes = 0;
   for (const Distribution1D& rows : rows_) bytes += rows.MemoryBytes();
   for (const Distribution2D& bin : bins_) bytes += bin.MemoryBytes();
   return TableUse::Of(bytes);

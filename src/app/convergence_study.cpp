@@ -74,7 +74,7 @@ class StudyRunner {
 
   /// As it is loaded for that integrator.
   const Scene& SceneOf(const std::string& integrator, const std::string& strategy) {
-    std::unique_ptr<Scene>& scene = scenes_[{IsLeftToDapple(integrator, ""), strategy}];
+    std::unique_ptr<Scene>& scene = scenes_[{strategy.empty() && IsLeftToDapple(integrator, ""), strategy}];
     if (!scene) {
       SceneOptions options = options_.scene;
       options.integrator = integrator;

@@ -18,7 +18,7 @@ constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kInterval{150};
 
 /// "12 passes, 3.41 M rays/s, 1.20 M photons/s, noise about 3.1 %, 0:12 left"
-std::string Describe(const RenderProgress& progress, float exposure) {
+std::string Describe(const RenderProgress& progress, const std::string& error) {
   if (progress.passesDone == 0) return "prepared";
   std::string text = FormatNumberOf(progress.passesDone, "pass", "passes");
   const double seconds = std::max(progress.seconds, 1e-9);
@@ -27,8 +27,7 @@ std::string Describe(const RenderProgress& progress, float exposure) {
     const double photons = static_cast<double>(progress.stats.photonsEmitted);
     text += fmt::format(", {} photons/s", FormatCount(photons / seconds));
   }
-  if (const auto error = EstimateError(*progress.film, exposure))
-    text += ", " + FormatError(*error, progress.film->TracksBlur());
+  if (!error.empty()) text += ", " + error;
   if (progress.secondsLeft && progress.fraction < 1)
     text += fmt::format(", {} left", FormatDuration(*progress.secondsLeft));
   return text;
@@ -62,10 +61,23 @@ void ProgressDisplay::ShowBar(const RenderProgress& progress) {
   lastShown_ = now;
   const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
   std::string line =
-      fmt::format("[{:=<{}}{:{}}] {}", "", filled, "", kBarWidth - filled, Describe(progress, exposure_));
+      fmt::format("[{:=<{}}{:{}}] {}", "", filled, "", kBarWidth - filled, Describe(progress, ErrorOf(progress)));
   line.resize(std::min(line.size(), static_cast<size_t>(TerminalWidth() - 1)));
   std::fputs(fmt::format("\r{}\x1b[K", line).c_str(), stderr);
   std::fflush(stderr);
+}
+
+const std::string& ProgressDisplay::ErrorOf(const RenderProgress& progress) {
+  if (progress.error) return error_ = FormatError(*progress.error, progress.film->TracksBlur());
+  // The time that it takes is the render's.
+  constexpr int kLeastInterval = 50;
+  const Clock::time_point begin = Clock::now();
+  if (begin - errorBegin_ < kLeastInterval * errorCost_) return error_;
+  if (const auto error = EstimateError(*progress.film, exposure_))
+    error_ = FormatError(*error, progress.film->TracksBlur());
+  errorBegin_ = begin;
+  errorCost_ = Clock::now() - begin;
+  return error_;
 }
 
 void ProgressDisplay::ShowLine(const RenderProgress& progress) {
@@ -73,7 +85,7 @@ void ProgressDisplay::ShowLine(const RenderProgress& progress) {
   // The first pass always has its line: it tells how fast the rest will go.
   if (tenths <= tenthsShown_ && progress.passesDone != 1) return;
   tenthsShown_ = tenths;
-  Tell(fmt::format("{:3} %: {}", tenths * 10, Describe(progress, exposure_)));
+  Tell(fmt::format("{:3} %: {}", tenths * 10, Describe(progress, ErrorOf(progress))));
 }
 
 }  // namespace dapple

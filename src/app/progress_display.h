@@ -2,7 +2,7 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
+#include <string>
 
 #include "src/render/driver.h"
 
@@ -24,11 +24,16 @@ class ProgressDisplay {
 
   void ShowBar(const RenderProgress& progress);
   void ShowLine(const RenderProgress& progress);
+  /// In words; found anew where that takes at most a fiftieth of the time. Empty where it is not known yet.
+  const std::string& ErrorOf(const RenderProgress& progress);
 
   float exposure_;
   bool isTerminal_;
   Clock::time_point lastShown_{};
   int tenthsShown_ = 0;
+  std::string error_;
+  Clock::time_point errorBegin_{};
+  Clock::duration errorCost_{};
 };
 
 }  // namespace dapple

@@ -282,8 +282,7 @@ LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics)
   if (!options.strategy.empty()) {
     SetStrategy(options, &description);
   } else if (IsLeftToDapple(options.integrator, IntegratorNameOf(description))) {
-    // The algorithm's parts are left to it too: this strategy had the least error in the same time
-    // (docs/environment.md).
+    // The algorithm's parts are left to it too: here with less error in the same time (docs/performance.md).
     SetDefaultOnEnvironmentMaps(&description, StringParameter("sampling", "irradiance"));
   }
   BuildOptions build;

@@ -106,6 +106,8 @@ void CheckPngChunks(std::string_view bytes, const FileLocation& location) {
   for (size_t i = kSignature; i + kLengthAndType <= bytes.size();) {
     size_t length = 0;
     for (size_t b = 0; b < 4; ++b) length = length << 8 | static_cast<uint8_t>(bytes[i + b]);
+    // What follows the end belongs to others.
+    if (bytes.substr(i + 4, 4) == "IEND") return;
     i += kLengthAndType;
     if (length > bytes.size() - i) throw Error(location, "cannot read the image: the file ends early");
     i += length + kChecksum;

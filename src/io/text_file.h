@@ -10,8 +10,8 @@
 namespace dapple {
 
 /// The bytes of a file, decompressed where it is gzip (several members too). Throws Error where it is missing, no
-/// regular file, unreadable, damaged, or inflates to more than 64 MB and 100 times its size; `namedAt` is the place that
-/// names the file.
+/// regular file, unreadable, damaged, or inflates to more than 64 MB and 100 times its size; `namedAt` is the place
+/// that names the file.
 std::string ReadTextFile(const std::filesystem::path& path, const FileLocation& namedAt = {});
 
 enum class NumberStatus { Ok, Malformed, Overflow };

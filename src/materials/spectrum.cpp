@@ -97,8 +97,8 @@ std::vector<double> ParseNumbers(const std::string& path, std::string_view text)
     double value = 0;
     const auto [stop, code] = std::from_chars(text.data() + start, text.data() + end, value);
     if (code != std::errc() || stop != text.data() + end) {
-      throw Error(PlaceInFile(path, text, i),
-                  "\"" + std::string(text.substr(i, std::min<size_t>(end - i, 40))) + "\" in a spectrum; expected a number");
+      throw Error(PlaceInFile(path, text, i), "\"" + std::string(text.substr(i, std::min<size_t>(end - i, 40))) +
+                                                  "\" in a spectrum; expected a number");
     }
     numbers.push_back(value);
     i = end;

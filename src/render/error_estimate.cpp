@@ -1,6 +1,7 @@
 #include "src/render/error_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <vector>

@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -121,6 +122,13 @@ TEST(Png, OutOfRangeAndNaNAreClamped) {
   image.SetColor(0, 0, {std::nanf(""), -4, 1e30f});
   WritePng(folder.Path("a.png"), image);
   EXPECT_EQ(ReadImage(folder.Path("a.png")).ColorAt(0, 0), Color(0, 0, 1));
+}
+
+TEST(Png, WhatFollowsTheEndIsLeftAlone) {
+  const TemporaryFolder folder;
+  WritePng(folder.Path("a.png"), Image::Rgb(3, 2));
+  std::ofstream(folder.Path("a.png"), std::ios::app | std::ios::binary) << std::string(16, '\xff');
+  EXPECT_EQ(ReadImage(folder.Path("a.png")).Width(), 3);
 }
 
 TEST(Png, SixteenBits) {

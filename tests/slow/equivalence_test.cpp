@@ -3,6 +3,7 @@
 // Density estimation is blurred by its radius; its picture is extrapolated to radius zero from two radii. What an
 // algorithm cannot see is left out: light tracing where the camera looks at a smooth mirror or glass, path tracing
 // where a light without extent shines through them; there, photon algorithms are compared with each other.
+// photon_mapping is left out where it is too noisy to say anything: kNoisyFinalGather.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>

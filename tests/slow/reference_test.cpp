@@ -10,6 +10,7 @@
 
 #include "src/image/image_io.h"
 #include "src/io/build_scene.h"
+#include "src/render/error_estimate.h"
 #include "tests/support/grouped_render.h"
 
 namespace dapple {
@@ -196,6 +197,54 @@ INSTANTIATE_TEST_SUITE_P(V3, Slope,
                                            WithPhotons({"lens-v3", "lens", "sppm", 64}, 50000),
                                            Case{"envglass-v3", "envglass", "sppm", 64}),
                          NameOf);
+
+/// A scene and, of its reference, its own relative MSE, as the references' README tells it.
+struct ErrorCase {
+  std::string scene, integrator;
+  double ownError;
+};
+
+void PrintTo(const ErrorCase& c, std::ostream* out) { *out << c.scene << " " << c.integrator; }
+
+class ErrorIsTold : public ::testing::TestWithParam<ErrorCase> {};
+
+// What `--error` goes by, against the error that the reference shows: within a factor of 1.5 after 8 passes and
+// after 64.
+TEST_P(ErrorIsTold, WithinAFactorOfOneAndAHalf) {
+  if (ReferenceFolder().empty()) GTEST_SKIP() << "DAPPLE_REFERENCES does not name the folder of references";
+  const ErrorCase& c = GetParam();
+  const auto scene = Load(c.scene + "-v3.pbrt");
+  const Image reference = ReadImage(ReferenceFolder() + "/" + c.scene + ".exr");
+  IntegratorOptions options = OptionsOf(*scene, c.integrator);
+  // Few, so that the error stays above the references' own.
+  options.photonsPerPass = 10000;
+  const auto integrator = MakeIntegrator(c.integrator, options);
+  integrator->Prepare(*scene, 1);
+  Film film(scene->Settings().resolution, scene->Settings().crop, scene->Settings().filter);
+  film.TrackBlur();
+  int pass = 0;
+  for (int passes : {8, 64}) {
+    for (; pass < passes; ++pass) integrator->RenderPass(pass, film);
+    const double found = CompareImages(film.ToImage(), reference).relativeMse;
+    ASSERT_GT(found, 2 * c.ownError) << "the reference is not good enough to tell";
+    const double error = std::sqrt(found - c.ownError);
+    const std::optional<ErrorEstimate> estimate = EstimateError(film, scene->Settings().exposure);
+    ASSERT_TRUE(estimate);
+    const double ratio = estimate->Total() / error;
+    std::cout << fmt::format("{} passes: told {:.2f} %, is {:.2f} %, ratio {:.2f}\n", passes, 100 * estimate->Total(),
+                             100 * error, ratio);
+    EXPECT_GT(ratio, 1 / 1.5) << passes << " passes";
+    EXPECT_LT(ratio, 1.5) << passes << " passes";
+  }
+}
+
+// The caustics of ring and lens are what paths cannot find, or seldom: what is not in the picture cannot be told.
+INSTANTIATE_TEST_SUITE_P(V3, ErrorIsTold,
+                         ::testing::Values(ErrorCase{"cbox", "path", 3e-4}, ErrorCase{"envglass", "path", 1e-5},
+                                           ErrorCase{"veach", "path", 5e-4}, ErrorCase{"cbox", "sppm", 3e-4},
+                                           ErrorCase{"ring", "sppm", 2e-4}, ErrorCase{"lens", "sppm", 2e-4},
+                                           ErrorCase{"envglass", "sppm", 1e-5}, ErrorCase{"veach", "sppm", 5e-4}),
+                         [](const auto& test) { return test.param.scene + "_" + test.param.integrator; });
 
 }  // namespace
 }  // namespace dapple
