@@ -88,21 +88,21 @@ TEST_P(AllIntegratorsAgree, BlockByBlock) {
     EXPECT_LE(report.worstExcess, 0) << what << ": " << report.text;
     EXPECT_LT(report.medianSigma, 0.01) << what << ": too noisy to say anything";
   };
-  const bool canConnect = scene.GetCamera().CanConnect();
+  const bool pathSeesAll = PathSeesAll(scene.Facts()), canConnect = scene.GetCamera().CanConnect();
   const std::vector<bool> specular = PixelsOnSpecularSurfaces(scene);
-  const GroupedImages path = RenderGroups(scene, "path", Options(), PathSeesAll(scene.Facts()) ? 6 * kPasses : kGroups,
-                                          kGroups, 1),
+  const GroupedImages path = RenderGroups(scene, "path", Options(), pathSeesAll ? 6 * kPasses : kGroups, kGroups, 1),
                       sppm = AtRadiusZero(scene, "sppm", kPasses);
   for (const std::string_view name : IntegratorNames()) {
     const std::string integrator(name);
     if (integrator == "path" || (integrator == "light_tracing" && !canConnect)) continue;
     if (integrator == "photon_mapping" && kNoisyFinalGather.contains(GetParam())) continue;
     const bool isLightTracing = integrator == "light_tracing";
+    const int passes = integrator == "hybrid" && !pathSeesAll ? kPasses + kPasses / 2 : kPasses;
     const GroupedImages images = isLightTracing
                                      ? RenderGroups(scene, integrator, Options(), 2 * kPasses, kGroups, 2)
-                                     : (integrator == "sppm" ? sppm : AtRadiusZero(scene, integrator, kPasses));
+                                     : (integrator == "sppm" ? sppm : AtRadiusZero(scene, integrator, passes));
     const std::vector<bool> leftOut = isLightTracing ? specular : std::vector<bool>();
-    if (PathSeesAll(scene.Facts())) {
+    if (pathSeesAll) {
       expectAgreement(integrator + " against path", CompareBlocks(images, path, kBlockSize, kTolerance, leftOut));
     } else if (integrator != "sppm") {
       expectAgreement(integrator + " against sppm", CompareBlocks(images, sppm, kBlockSize, kTolerance, leftOut));
