@@ -87,7 +87,7 @@ class EnvironmentMap {
   /// Columns and rows of cells.
   Vec2i Cells() const { return {width_ + 1, height_ + 1}; }
   EnvironmentMapping Mapping() const { return mapping_; }
-  /// `w` of any length but zero.
+  /// `w` of any length whose square is neither zero nor infinite.
   EnvironmentPlace PlaceOf(const Vec3d& w) const;
   /// The unit direction of the place `s` in [0, 1]^2 of a cell.
   Vec3d DirectionOf(const Vec2i& cell, const Vec2d& s) const;
