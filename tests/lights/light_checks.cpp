@@ -23,7 +23,7 @@ constexpr int kSamples = 20'000;
 
 const Frame kSkew = Frame::FromZ(Normalize(Vec3(1, 2, 3)));  // no light's own axes
 
-Verdict VerdictOf(const ChiSquare& fit, double level) { return {fit.pValue > level, fit.message}; }
+Verdict VerdictOf(const ChiSquare& fit) { return {fit.Passes(), fit.message}; }
 
 Verdict Passed() { return {}; }
 
@@ -134,7 +134,7 @@ class RayDomain {
   ConeDomain cone_{2, kSkew};
 };
 
-Verdict CheckDirectionsToSurface(const TestedLight& tested, const LightContext& at, double level) {
+Verdict CheckDirectionsToSurface(const TestedLight& tested, const LightContext& at) {
   const SurfaceDomain surface(*tested.shape);
   const auto sample = [&](UniformNumbers& random) -> std::optional<Coordinates<3>> {
     const std::optional<LiSample> drawn = tested.light.Sample_Li(at, DrawLi(random));
@@ -149,7 +149,7 @@ Verdict CheckDirectionsToSurface(const TestedLight& tested, const LightContext& 
     const double cosTheta = AbsDot(ToDouble(hit.ng), Normalize(toLight));
     return tested.light.Pdf_Li(at, wi, &hit) * cosTheta / LengthSquared(toLight) * area;
   };
-  return VerdictOf(testing::ChiSquareOnCube<3>(sample, density, {surface.Parts(), 6, 8}, kSamples, 21), level);
+  return VerdictOf(testing::ChiSquareOnCube<3>(sample, density, {surface.Parts(), 6, 8}, kSamples, 21));
 }
 
 /// The integral over the unit square.
@@ -295,9 +295,9 @@ std::vector<LightContext> TestContexts() {
           LightContext({-3, 1, 1.75f}, Normalize(Vec3(1, 0, 0.5f)), false)};
 }
 
-Verdict CheckDirectionsToLight(const TestedLight& tested, const LightContext& at, double level) {
+Verdict CheckDirectionsToLight(const TestedLight& tested, const LightContext& at) {
   if (tested.light.IsDelta()) return Passed();
-  if (tested.shape) return CheckDirectionsToSurface(tested, at, level);
+  if (tested.shape) return CheckDirectionsToSurface(tested, at);
   const auto sample = [&](UniformNumbers& random) -> std::optional<Vec3d> {
     const std::optional<LiSample> drawn = tested.light.Sample_Li(at, DrawLi(random));
     return drawn ? std::optional(ToDouble(drawn->wi)) : std::nullopt;
@@ -307,10 +307,10 @@ Verdict CheckDirectionsToLight(const TestedLight& tested, const LightContext& at
     return tested.light.Le(Ray{at.p, wi}).IsBlack() ? 0 : tested.light.Pdf_Li(at, wi, nullptr);
   };
   const testing::ChiSquareOptions options{.samples = kSamples, .rows = 8, .columns = 12, .seed = 22};
-  return VerdictOf(testing::ChiSquareOnCone(sample, pdf, ConeDomain(2, kSkew), options), level);
+  return VerdictOf(testing::ChiSquareOnCone(sample, pdf, ConeDomain(2, kSkew), options));
 }
 
-Verdict CheckRayOrigins(const TestedLight& tested, double level) {
+Verdict CheckRayOrigins(const TestedLight& tested) {
   const RayDomain rays(tested);
   if (rays.HasDiscreteOrigin()) return Passed();
   const auto sample = [&](UniformNumbers& random) -> std::optional<Coordinates<3>> {
@@ -318,10 +318,10 @@ Verdict CheckRayOrigins(const TestedLight& tested, double level) {
     return drawn ? rays.OriginOf(*drawn) : std::nullopt;
   };
   const auto density = [&](const Coordinates<3>& x) { return rays.Density(x, {0.25, 0.25}).position; };
-  return VerdictOf(testing::ChiSquareOnCube<3>(sample, density, {rays.Parts(), 6, 8}, kSamples, 23), level);
+  return VerdictOf(testing::ChiSquareOnCube<3>(sample, density, {rays.Parts(), 6, 8}, kSamples, 23));
 }
 
-Verdict CheckRayDirections(const TestedLight& tested, double level) {
+Verdict CheckRayDirections(const TestedLight& tested) {
   const RayDomain rays(tested);
   if (rays.HasDiscreteDirection()) return Passed();
   const auto sample = [&](UniformNumbers& random) -> std::optional<Coordinates<2>> {
@@ -329,10 +329,10 @@ Verdict CheckRayDirections(const TestedLight& tested, double level) {
     return drawn ? rays.DirectionOf(*drawn) : std::nullopt;
   };
   const auto density = [&](const Coordinates<2>& x) { return rays.Density({0.5, 0.5, 0.5}, x).direction; };
-  return VerdictOf(testing::ChiSquareOnCube<2>(sample, density, {8, 12}, kSamples, 24), level);
+  return VerdictOf(testing::ChiSquareOnCube<2>(sample, density, {8, 12}, kSamples, 24));
 }
 
-Verdict CheckRays(const TestedLight& tested, double level) {
+Verdict CheckRays(const TestedLight& tested) {
   const RayDomain rays(tested);
   if (rays.HasDiscreteOrigin() || rays.HasDiscreteDirection()) return Passed();  // one half is all there is
   const auto sample = [&](UniformNumbers& random) -> std::optional<Coordinates<4>> {
@@ -351,7 +351,7 @@ Verdict CheckRays(const TestedLight& tested, double level) {
     }
     return sum;
   };
-  return VerdictOf(testing::ChiSquareOnProduct(sample, density, {2, 2, 6, 10}, kSamples, 25), level);
+  return VerdictOf(testing::ChiSquareOnProduct(sample, density, {2, 2, 6, 10}, kSamples, 25));
 }
 
 Verdict CheckEnergy(const TestedLight& tested, double quadratureError) {

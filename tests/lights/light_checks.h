@@ -1,20 +1,12 @@
-// What must be true of every light, as checks that give a verdict: the tests of lights assert that it is good, the
-// mutation suite that it is bad where a fault was planted.
+// What must be true of every light, as checks that give a verdict.
 #pragma once
-
-#include <string>
 
 #include "lights/emission_disk.h"
 #include "src/base/frame.h"
 #include "tests/lights/light_cases.h"
+#include "tests/support/verdict.h"
 
 namespace dapple {
-
-/// What a check found.
-struct Verdict {
-  bool passes = true;
-  std::string message;
-};
 
 /// A light under test, prepared for `kTestExtent`, and the shape that it shines from (null: none).
 struct TestedLight {
@@ -33,13 +25,13 @@ std::vector<LightContext> TestContexts();
 
 /// Chi-square of `Sample_Li` against `Pdf_Li`: over the shape's surface where there is one (so that the parts of it
 /// which stand in each other's way are told apart), else over the sphere. Passes delta lights.
-Verdict CheckDirectionsToLight(const TestedLight& tested, const LightContext& at, double level);
+Verdict CheckDirectionsToLight(const TestedLight& tested, const LightContext& at);
 
 /// Chi-square of `Sample_Le` against `Pdf_Le`: of the origins alone, over the shape's surface or the disk across the
 /// scene; of the directions alone; and of both together. Passes where the half is discrete.
-Verdict CheckRayOrigins(const TestedLight& tested, double level);
-Verdict CheckRayDirections(const TestedLight& tested, double level);
-Verdict CheckRays(const TestedLight& tested, double level);
+Verdict CheckRayOrigins(const TestedLight& tested);
+Verdict CheckRayDirections(const TestedLight& tested);
+Verdict CheckRays(const TestedLight& tested);
 
 /// The mean flux of emitted rays is `Power()`, within five standard errors, and so is an adaptive quadrature of what
 /// the light emits by its own account of radiance (`L`, `Le`, or what `Sample_Li` says of a light without extent),

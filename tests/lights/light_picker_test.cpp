@@ -8,7 +8,7 @@
 #include "lights/environment_light.h"
 #include "lights/point_light.h"
 #include "src/geometry/disk.h"
-#include "tests/lights/light_cases.h"
+#include "tests/lights/choice_checks.h"
 
 namespace dapple {
 namespace {
@@ -44,6 +44,27 @@ TEST(LightPicker, PicksByPower) {
   EXPECT_EQ(picker.PickByPower(0.24).index, 0);
   EXPECT_EQ(picker.PickByPower(0.26).index, 2);
   EXPECT_NEAR(picker.InvertByPower(2, picker.PickByPower(0.7).u), 0.7, 1e-12);
+}
+
+TEST(LightPicker, PicksFollowTheirProbabilities) {
+  const Lights few = PointLights({1, 0, 3, 2}), mixed = Mixed();
+  const LightPicker ofFew(few), ofMixed(mixed);
+  const auto expect = [](const Verdict& verdict) { EXPECT_TRUE(verdict.passes) << verdict.message; };
+  for (const auto& [picker, lights] : {std::pair(&ofFew, &few), {&ofMixed, &mixed}}) {
+    expect(CheckPicks([&](double u) { return picker->PickByPower(u); },
+                      [&](int light) { return picker->ProbabilityByPower(light); }, static_cast<int>(lights->size())));
+  }
+  const LightContext at(Vec3(0.5f, 0.5f, 0.5f));
+  expect(CheckPicks([&](double u) { return ofMixed.PickFor(at, u); },
+                    [&](int light) { return ofMixed.ProbabilityFor(at, light); }, static_cast<int>(mixed.size())));
+}
+
+TEST(LightPicker, RaysOfPickedLightsCarryThePowerOfAllEvenly) {
+  const Lights lights = PointLights({1, 0, 3, 2, 1000});
+  const LightPicker picker(lights);
+  const auto pick = [&](double u) { return picker.PickByPower(u); };
+  for (const Verdict& verdict : {CheckPickedEnergy(pick, lights), CheckPickedEvenness(pick, lights)})
+    EXPECT_TRUE(verdict.passes) << verdict.message;
 }
 
 TEST(LightPicker, ProbabilitiesAtAPointAreThoseOfThePick) {

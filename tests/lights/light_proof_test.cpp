@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/lights/light_checks.h"
-#include "tests/support/chi_square.h"
 
 namespace dapple {
 namespace {
 
 class EveryLightProof : public ::testing::Test {
  protected:
-  /// One percent for `checks` tests of each light together.
-  double Level(int checks) const { return testing::SidakLevel(0.01, checks * static_cast<int>(lights_.size())); }
   static bool IsTextured(const LightCase& c) { return c.name.find("textured") != std::string::npos; }
 
   const std::vector<LightCase> lights_ = AllLights();
@@ -19,12 +16,11 @@ class EveryLightProof : public ::testing::Test {
 
 TEST_F(EveryLightProof, DirectionsTowardItFollowTheirDensity) {
   const std::vector<LightContext> contexts = TestContexts();
-  const double level = Level(static_cast<int>(contexts.size()));
   for (const LightCase& c : lights_) {
     for (size_t i = 0; i < contexts.size(); ++i) {
       if (c.light->IsInfinite() && i > 2) continue;  // the same from everywhere
       const LightContext& at = contexts[i];
-      const Verdict verdict = CheckDirectionsToLight(c, at, level);
+      const Verdict verdict = CheckDirectionsToLight(c, at);
       EXPECT_TRUE(verdict.passes) << c.name << " from " << at.p << ": " << verdict.message;
     }
   }
@@ -32,21 +28,21 @@ TEST_F(EveryLightProof, DirectionsTowardItFollowTheirDensity) {
 
 TEST_F(EveryLightProof, OriginsOfRaysFollowTheirDensity) {
   for (const LightCase& c : lights_) {
-    const Verdict verdict = CheckRayOrigins(c, Level(1));
+    const Verdict verdict = CheckRayOrigins(c);
     EXPECT_TRUE(verdict.passes) << c.name << ": " << verdict.message;
   }
 }
 
 TEST_F(EveryLightProof, DirectionsOfRaysFollowTheirDensity) {
   for (const LightCase& c : lights_) {
-    const Verdict verdict = CheckRayDirections(c, Level(1));
+    const Verdict verdict = CheckRayDirections(c);
     EXPECT_TRUE(verdict.passes) << c.name << ": " << verdict.message;
   }
 }
 
 TEST_F(EveryLightProof, OriginsAndDirectionsFollowTheirDensityTogether) {
   for (const LightCase& c : lights_) {
-    const Verdict verdict = CheckRays(c, Level(1));
+    const Verdict verdict = CheckRays(c);
     EXPECT_TRUE(verdict.passes) << c.name << ": " << verdict.message;
   }
 }

@@ -1,34 +1,20 @@
 // Faults of what lights are drawn with: the choice of a light, a table, the BSDF that the light meets.
-#include <cmath>
-#include <limits>
-
 #include "lights/light_picker.h"
 #include "lights/point_light.h"
 #include "src/base/numerics.h"
 #include "src/materials/bsdf.h"
-#include "src/sampling/warps.h"
+#include "tests/lights/choice_checks.h"
 #include "tests/lights/mutants.h"
-#include "tests/support/chi_square.h"
+#include "tests/materials/bsdf_checks.h"
+#include "tests/support/table_checks.h"
 
 namespace dapple {
 
 namespace {
 
-using testing::Coordinates;
-using testing::UniformNumbers;
-
-constexpr int kSamples = 20'000;
-constexpr double kLevel = 1e-6;  // a fault is far below it
-
-/// Whether all of the values are alike but for rounding.
-class Evenness {
- public:
-  void Add(double x) { least_ = std::min(least_, x), most_ = std::max(most_, x); }
-  bool IsEven() const { return most_ - least_ <= 1e-5 * most_; }
-
- private:
-  double least_ = std::numeric_limits<double>::infinity(), most_ = 0;
-};
+void Note(const Verdict& verdict, const char* name, Rejections* names) {
+  if (!verdict.passes) names->emplace_back(name);
+}
 
 /// What chooses the light of a photon, with other weights than the lights' powers in the faulty place.
 class FaultyChoice {
@@ -54,105 +40,92 @@ class FaultyChoice {
 
 Rejections RejectionsOfChoice(const std::vector<double>& wrong, Place place) {
   std::vector<std::unique_ptr<Light>> lights;
-  double power = 0;
-  for (const float intensity : {1.f, 2.f, 4.f, 1.f}) {
+  for (const float intensity : {1.f, 2.f, 4.f, 1.f})
     lights.push_back(std::make_unique<PointLight>(Vec3(0), Color(intensity)));
-    power += static_cast<double>(lights.back()->Power().g);
-  }
   const LightPicker picker(lights);
   const FaultyChoice choice(picker, wrong, place);
-  const int count = static_cast<int>(lights.size());
-
-  const auto fit = testing::ChiSquareOnInterval(
-      [&](double u) { return std::optional(choice.Pick(u).index + 0.5); },
-      [&](double x) { return choice.Probability(std::min(static_cast<int>(x), count - 1)); }, 0, count,
-      {.samples = kSamples, .rows = count, .columns = 1, .seed = 41});
-  Mean flux;
-  Evenness evenness;
-  RandomNumbers random(42);
-  for (int i = 0; i < kSamples; ++i) {
-    const PickedLight picked = choice.Pick(random.Get1D());
-    const auto ray = lights[static_cast<size_t>(picked.index)]->Sample_Le(random.Le());
-    // What claims never to be drawn can count for nothing.
-    const double carried = picked.probability > 0 ? static_cast<double>(ray->Flux().g) / picked.probability : 0;
-    flux.Add(carried), evenness.Add(carried);
-  }
+  const auto pick = [&](double u) { return choice.Pick(u); };
   Rejections names;
-  if (!(fit.pValue > kLevel)) names.emplace_back("chi-square of the choice");
-  if (std::abs(flux.Value() - power) > 5 * flux.StandardError() + 1e-5 * power) names.emplace_back("energy");
-  if (!evenness.IsEven()) names.emplace_back("lookup");
+  Note(CheckPicks(
+           pick, [&](int light) { return choice.Probability(light); }, static_cast<int>(lights.size())),
+       "chi-square of the choice", &names);
+  Note(CheckPickedEnergy(pick, lights), "energy", &names);
+  Note(CheckPickedEvenness(pick, lights), "lookup", &names);
   return names;
 }
 
 /// A table whose two coordinates are swapped in what is drawn, or in what is asked.
+class SwappedTable {
+ public:
+  SwappedTable(const Distribution2D& table, Place place) : table_(table), place_(place) {}
+
+  int Width() const { return table_.Width(); }
+  int Height() const { return table_.Height(); }
+  ContinuousSample2D Sample(const Vec2d& u) const {
+    ContinuousSample2D sample = table_.Sample(u);
+    if (InSampler(place_)) std::swap(sample.p.x, sample.p.y);
+    return sample;
+  }
+  double Pdf(const Vec2d& p) const { return table_.Pdf(InDensity(place_) ? Vec2d(p.y, p.x) : p); }
+
+ private:
+  const Distribution2D& table_;
+  Place place_;
+};
+
 Rejections RejectionsOfSwappedTable(Place place) {
   constexpr int kSize = 8;
-  std::vector<double> weights;
+  std::vector<float> weights;
   RandomNumbers random(43);
-  for (int i = 0; i < kSize * kSize; ++i) weights.push_back(std::max(0.0, random.Get1D() - 0.25));
-  const Distribution2D table(std::span<const double>(weights), kSize, kSize);
-  const auto swapped = [](const Vec2d& p) { return Vec2d(p.y, p.x); };
-  const auto draw = [&](const Vec2d& u) {
-    const Vec2d p = table.Sample(u).p;
-    return InSampler(place) ? swapped(p) : p;
-  };
-  const auto density = [&](const Vec2d& p) { return table.Pdf(InDensity(place) ? swapped(p) : p); };
-
-  const auto fit = testing::ChiSquareOnCube<2>(
-      [&](UniformNumbers& numbers) -> std::optional<Coordinates<2>> {
-        const Vec2d p = draw(numbers.Get2D());
-        return Coordinates<2>{p.x, p.y};
-      },
-      [&](const Coordinates<2>& x) {
-        return density({x[0], x[1]});
-      },
-      {kSize, kSize}, kSamples, 44);
-  Evenness evenness;
-  for (int i = 0; i < kSamples; ++i) {
-    const Vec2d p = draw(random.Get2D());
-    const auto cell = [](double x) { return std::min(static_cast<size_t>(x * kSize), size_t{kSize - 1}); };
-    if (density(p) > 0) evenness.Add(weights[cell(p.y) * kSize + cell(p.x)] / density(p));
-  }
+  for (int i = 0; i < kSize * kSize; ++i) weights.push_back(static_cast<float>(std::max(0.0, random.Get1D() - 0.25)));
+  const Distribution2D table(std::span<const float>(weights), kSize, kSize);
+  const SwappedTable swapped(table, place);
   Rejections names;
-  if (!(fit.pValue > kLevel)) names.emplace_back("chi-square of the table");
-  if (!evenness.IsEven()) names.emplace_back("lookup");
+  Note(testing::CheckTableDraws(swapped), "chi-square of the table", &names);
+  Note(testing::CheckTableDensity(swapped, weights), "lookup", &names);
   return names;
 }
 
 /// Rough glass whose radiance keeps its value where it is refracted: the eta^2 of a narrower cone is missing, in the
 /// weight of what is drawn, or in what `Eval` says (here: the density), or in both.
-Rejections RejectionsOfMissingEta(Place place) {
-  constexpr float kEta = 1.5f;
-  SurfaceInteraction hit;
-  hit.ng = hit.ns = Vec3(0, 0, 1);
-  hit.dpdu = hit.dpdus = Vec3(1, 0, 0);
-  Bsdf bsdf(hit);
-  bsdf.Add(RoughDielectric{Ggx(0.3f, 0.3f), kEta, Color(1), Color(1)}, Color(1));
-  const auto squaredIndex = [](const Vec3& w) { return w.z > 0 ? 1 : Sqr(kEta); };
-  const auto missing = [&](const Vec3& wo, const Vec3& wi) { return squaredIndex(wi) / squaredIndex(wo); };
-  const auto eval = [&](const Vec3& wo, const Vec3& wi) {
-    return bsdf.Eval(wo, wi, TransportMode::Radiance).g * (InDensity(place) ? missing(wo, wi) : 1);
-  };
+class GlassWithoutEta {
+ public:
+  static constexpr float kEta = 1.5f;
 
-  RandomNumbers random(45);
-  bool isReciprocal = true, isWhatIsLookedUp = true;
-  for (int i = 0; i < 2000; ++i) {
-    const Vec3 wo = ToFloat(SampleSphere(random.Get2D())), wi = ToFloat(SampleSphere(random.Get2D()));
-    // f(wo, wi) n_i^2 = f(wi, wo) n_o^2 (Veach 1997, equation 5.14), with f = Eval / |wi.z|.
-    const float there = eval(wo, wi) / std::abs(wi.z) * squaredIndex(wi);
-    const float back = eval(wi, wo) / std::abs(wo.z) * squaredIndex(wo);
-    isReciprocal &= std::abs(there - back) <= 5e-3f * back + 5e-6f;
-
-    const double lobe = random.Get1D();
-    const auto drawn = bsdf.Sample(wo, lobe, random.Get2D(), TransportMode::Radiance);
-    if (!drawn || std::abs(drawn->wi.z) < 1e-3f) continue;
-    const float weight = drawn->weight.g * (InSampler(place) ? missing(wo, drawn->wi) : 1);
-    const float asked = eval(wo, drawn->wi) / bsdf.Pdf(wo, drawn->wi, TransportMode::Radiance);
-    isWhatIsLookedUp &= std::abs(weight - asked) <= 4e-3f * asked;
+  explicit GlassWithoutEta(Place place) : bsdf_(Hit()), place_(place) {
+    bsdf_.Add(RoughDielectric{Ggx(0.3f, 0.3f), kEta, Color(1), Color(1)}, Color(1));
   }
+
+  const Frame& ShadingFrame() const { return bsdf_.ShadingFrame(); }
+  std::optional<BsdfSample> Sample(const Vec3& wo, double uc, const Vec2d& u, TransportMode mode) const {
+    std::optional<BsdfSample> sample = bsdf_.Sample(wo, uc, u, mode);
+    if (sample && InSampler(place_)) sample->weight *= Missing(wo, sample->wi);
+    return sample;
+  }
+  Color Eval(const Vec3& wo, const Vec3& wi, TransportMode mode) const {
+    return bsdf_.Eval(wo, wi, mode) * (InDensity(place_) ? Missing(wo, wi) : 1);
+  }
+  float Pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const { return bsdf_.Pdf(wo, wi, mode); }
+
+ private:
+  static SurfaceInteraction Hit() {
+    SurfaceInteraction hit;
+    hit.ng = hit.ns = Vec3(0, 0, 1);
+    hit.dpdu = hit.dpdus = Vec3(1, 0, 0);
+    return hit;
+  }
+  static float SquaredIndex(const Vec3& w) { return w.z > 0 ? 1 : Sqr(kEta); }
+  static float Missing(const Vec3& wo, const Vec3& wi) { return SquaredIndex(wi) / SquaredIndex(wo); }
+
+  Bsdf bsdf_;
+  Place place_;
+};
+
+Rejections RejectionsOfMissingEta(Place place) {
+  const GlassWithoutEta glass(place);
   Rejections names;
-  if (!isReciprocal) names.emplace_back("reciprocity");
-  if (!isWhatIsLookedUp) names.emplace_back("lookup");
+  Note(testing::CheckReciprocity(glass, GlassWithoutEta::kEta, false), "reciprocity", &names);
+  Note(testing::CheckSampleAgainstEval(glass, TransportMode::Radiance), "lookup", &names);
   return names;
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/materials/bsdf_cases.h"
+#include "tests/materials/bsdf_checks.h"
 #include "tests/support/chi_square.h"
 
 namespace dapple {
@@ -35,9 +36,6 @@ INSTANTIATE_TEST_SUITE_P(Lobes, NonSpecularBsdf, ::testing::ValuesIn(testing::No
                          [](const auto& instance) { return instance.param.name; });
 
 TEST_P(NonSpecularBsdf, SamplesFollowThePdf) {
-  // One percent for all lobes, modes, frames and directions together.
-  const int tests = static_cast<int>(testing::NonSpecularCases().size() * std::size(kTilts) * (4 + 3));
-  const double level = testing::SidakLevel(0.01, tests);
   uint64_t seed = 100;
   for (const float tilt : kTilts) {
     const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
@@ -55,33 +53,19 @@ TEST_P(NonSpecularBsdf, SamplesFollowThePdf) {
         };
         const auto fit =
             testing::ChiSquareOnSphere(sample, pdf, {.samples = 30'000, .rows = 16, .columns = 24, .seed = seed++});
-        EXPECT_GT(fit.pValue, level) << fit.message << ", tilt " << tilt << ", wo " << wo.x << " " << wo.y << " "
-                                     << wo.z << ", mode " << static_cast<int>(mode);
+        EXPECT_TRUE(fit.Passes()) << fit.message << ", tilt " << tilt << ", wo " << wo.x << " " << wo.y << " " << wo.z
+                                  << ", mode " << static_cast<int>(mode);
       }
     }
   }
 }
 
 TEST_P(NonSpecularBsdf, SampleAgreesWithEvalAndPdf) {
-  auto random = Random(5);
   for (const float tilt : kTilts) {
     const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
     for (const TransportMode mode : kModes) {
-      for (int i = 0; i < 2000; ++i) {
-        const Vec3 wo = UniformDirection(random);
-        const double uc = Uniform(random);
-        const auto s = bsdf.Sample(wo, uc, {Uniform(random), Uniform(random)}, mode);
-        if (!s || s->IsSpecular()) continue;
-        ASSERT_NEAR(Length(s->wi), 1, 2e-6f);
-        ASSERT_TRUE(s->weight.IsFinite());
-        if (std::abs(s->wi.z) < 1e-3f || std::abs(Dot(s->wi, bsdf.ShadingFrame().n)) < 1e-3f) continue;
-        const float pdf = bsdf.Pdf(wo, s->wi, mode);
-        const Color eval = bsdf.Eval(wo, s->wi, mode);
-        EXPECT_NEAR(pdf / s->pdf, 1, 2e-3f);
-        EXPECT_NEAR(eval.g / (s->weight.g * s->pdf), 1, 2e-3f);
-        // The geometric normal tells reflection from transmission.
-        EXPECT_EQ(s->flags.HasReflection(), s->wi.z * wo.z > 0);
-      }
+      const Verdict verdict = testing::CheckSampleAgainstEval(bsdf, mode);
+      EXPECT_TRUE(verdict.passes) << verdict.message << ", tilt " << tilt << ", mode " << static_cast<int>(mode);
     }
   }
 }
@@ -102,21 +86,11 @@ TEST_P(NonSpecularBsdf, ModesAreAdjoint) {
 }
 
 TEST_P(NonSpecularBsdf, IsReciprocal) {
-  // f(wo, wi) n_i^2 = f(wi, wo) n_o^2 (Veach 1997, equation 5.14), with f = Eval / |ns.wi|.
-  auto random = Random(7);
+  // Lobes of transmission that do not refract keep to n = 1: only pure interfaces have an index of their own.
+  const bool isMixed = GetParam().lobes.size() > 1;
   for (const float tilt : kTilts) {
-    const Bsdf bsdf = MakeBsdf(GetParam(), tilt);
-    const Vec3 ns = bsdf.ShadingFrame().n;
-    // Lobes of transmission that do not refract keep to n = 1: only pure interfaces have an index of their own.
-    const bool isMixed = GetParam().lobes.size() > 1;
-    for (int i = 0; i < 2000; ++i) {
-      const Vec3 wo = UniformDirection(random), wi = UniformDirection(random);
-      if (isMixed && wo.z * wi.z < 0) continue;
-      const auto n2 = [&](const Vec3& w) { return w.z > 0 ? 1 : Sqr(GetParam().etaBelow); };
-      const float there = bsdf.Eval(wo, wi, TransportMode::Radiance).g / AbsDot(wi, ns) * n2(wi);
-      const float back = bsdf.Eval(wi, wo, TransportMode::Radiance).g / AbsDot(wo, ns) * n2(wo);
-      EXPECT_NEAR(there, back, 5e-3f * back + 5e-6f);
-    }
+    const Verdict verdict = testing::CheckReciprocity(MakeBsdf(GetParam(), tilt), GetParam().etaBelow, isMixed);
+    EXPECT_TRUE(verdict.passes) << verdict.message << ", tilt " << tilt;
   }
 }
 

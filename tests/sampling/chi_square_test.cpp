@@ -1,6 +1,7 @@
 // The harness itself: quadrature and tail are right, true densities pass at the rate that they should, false ones fail.
 #include "tests/support/chi_square.h"
 
+#include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
 namespace dapple::testing {
@@ -35,6 +36,13 @@ TEST(ChiSquareHarness, TrueDensitiesFailAsOftenAsTheLevelSays) {
   }
   EXPECT_NEAR(below, 40, 4 * 6);
 }
+
+TEST(ChiSquareHarness, MoreFitsThanTheShareFail) {
+  CountFit();
+  EXPECT_NONFATAL_FAILURE(CountFit(), "more fits than the share");
+}
+
+TEST(ChiSquareHarness, FitsWithoutAShareFail) { EXPECT_NONFATAL_FAILURE(CountFit(), "needs its share"); }
 
 TEST(ChiSquareHarness, RejectsWhatIsFalse) {
   const ChiSquareOptions options{.samples = 50'000, .rows = 8, .columns = 16, .seed = 2};

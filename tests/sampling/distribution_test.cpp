@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/chi_square.h"
+#include "tests/support/table_checks.h"
 
 namespace dapple {
 namespace {
@@ -182,8 +183,10 @@ TEST(Distribution2D, PartsOfRowsAreDrawnAndFoundAgain) {
 }
 
 TEST(Distribution2D, DensityIsTheWeightOverTheMean) {
-  const Distribution2D table = Make({1, 2, 3, 0, 5, 1}, 3, 2);
-  EXPECT_NEAR(table.Pdf({0.5, 0.25}), 2 / (12 / 6.0), 1e-14);
+  const std::vector<float> weights = {1, 2, 3, 0, 5, 1};
+  const Distribution2D table = Make(weights, 3, 2);
+  const Verdict verdict = testing::CheckTableDensity(table, weights);
+  EXPECT_TRUE(verdict.passes) << verdict.message;
   EXPECT_EQ(table.Pdf({0.1, 0.75}), 0);
   EXPECT_NEAR(table.Pdf({1, 1}), 0.5, 1e-14);
   EXPECT_NEAR(table.Sum(), 12, 1e-12);
@@ -196,10 +199,6 @@ TEST(Distribution2D, NothingIsDrawnWhereAllIsZero) {
   EXPECT_EQ(table.Pdf({0.5, 0.5}), 0);
 }
 
-// One percent for all the chi-square tests of distributions together.
-constexpr int kChiSquareTests = 13;
-const double kLevel = testing::SidakLevel(0.01, kChiSquareTests);
-
 TEST(DistributionChiSquare, OneDimension) {
   for (const std::vector<double>& weights : Tables()) {
     const Distribution1D distribution = Make(weights);
@@ -207,23 +206,15 @@ TEST(DistributionChiSquare, OneDimension) {
     const auto pdf = [&](double x) { return distribution.Pdf(x); };
     const testing::ChiSquareOptions options{.samples = 50'000, .rows = 10, .columns = 25, .seed = 4};
     const testing::ChiSquare fit = testing::ChiSquareOnInterval(sample, pdf, 0, 1, options);
-    EXPECT_GT(fit.pValue, kLevel) << weights.size() << " cells: " << fit.message;
+    EXPECT_TRUE(fit.Passes()) << weights.size() << " cells: " << fit.message;
   }
 }
 
 TEST(DistributionChiSquare, TwoDimensions) {
   const std::vector<float> uneven = {3, 0, 1, 2, 0, 0, 0, 5, 4, 1, 1, 1};
   for (const Distribution2D& table : {HardTable(), Make(uneven, 4, 3), Make(uneven, 3, 4), Make({5}, 1, 1)}) {
-    const testing::ChiSquare fit = testing::ChiSquareOnCube<2>(
-        [&](testing::UniformNumbers& random) {
-          const ContinuousSample2D drawn = table.Sample(random.Get2D());
-          return std::optional(testing::Coordinates<2>{drawn.p.x, drawn.p.y});
-        },
-        [&](const testing::Coordinates<2>& x) {
-          return table.Pdf({x[0], x[1]});
-        },
-        {2 * table.Width(), 2 * table.Height()}, 50'000, 5);
-    EXPECT_GT(fit.pValue, kLevel) << fit.message;
+    const Verdict verdict = testing::CheckTableDraws(table);
+    EXPECT_TRUE(verdict.passes) << verdict.message;
   }
 }
 

@@ -1,9 +1,10 @@
 // Chi-square goodness of fit between a sampling routine and the density that it claims: on the interval, the disk, the
 // sphere, the hemisphere, a cone, or any domain with coordinates of equal measure (area x direction, for one).
 //
-//   const double level = SidakLevel(0.01, kTests);   // 1 % for the whole family of kTests: mostly those of a file
 //   const ChiSquare fit = ChiSquareOnSphere(sample, pdf, {.seed = 1});
-//   EXPECT_GT(fit.pValue, level) << fit.message;
+//   EXPECT_TRUE(fit.Passes()) << fit.message;
+//
+// Each test states in chi_square_family.h how many fits it makes; all of the project are judged at one level.
 //
 // The domain is cut into cells; the density is integrated over each by adaptive quadrature; samples are counted. What
 // the density lacks to one is expected to come back as nothing (a rejected sample): that is a cell too. Cells that
@@ -23,6 +24,7 @@
 
 #include "src/base/frame.h"
 #include "src/base/vec.h"
+#include "tests/support/chi_square_family.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/random_numbers.h"
 
@@ -32,10 +34,10 @@ struct ChiSquare {
   double pValue = 0;    ///< probability of a fit as bad as this one, if the density is true
   double total = 0;     ///< the integral of the density
   std::string message;  ///< what was found, for the failing test
-};
 
-/// The level of each of `tests` independent tests, so that one of them fails by chance with probability `family`.
-inline double SidakLevel(double family, int tests) { return -std::expm1(std::log1p(-family) / tests); }
+  /// At the level of the whole project.
+  bool Passes() const { return pValue > FitLevel(); }
+};
 
 /// The upper regularised incomplete gamma function Q(a, x), by series or continued fraction (Numerical Recipes, 6.2).
 inline double UpperGamma(double a, double x) {
@@ -65,6 +67,7 @@ inline double ChiSquareTail(double statistic, int degreesOfFreedom) {
 
 /// Compares counts with expectations (both of the same total).
 inline ChiSquare CompareCounts(const std::vector<double>& expected, const std::vector<double>& observed) {
+  CountFit();
   constexpr double kSmallest = 5;
   std::vector<size_t> order(expected.size());
   std::iota(order.begin(), order.end(), size_t{0});
