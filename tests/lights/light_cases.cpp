@@ -12,6 +12,7 @@
 #include "src/geometry/disk.h"
 #include "src/geometry/sphere.h"
 #include "src/geometry/triangle_mesh.h"
+#include "src/materials/image_texture.h"
 
 namespace dapple {
 
@@ -57,12 +58,15 @@ void AddImagePointLights(std::vector<LightCase>* cases) {
 }
 
 void AddAreaLights(std::vector<LightCase>* cases) {
-  const auto add = [&](const std::string& name, std::unique_ptr<Shape> shape, bool twoSided, bool textured = false) {
-    const Shape* s = shape.get();
-    auto light = textured ? std::make_unique<AreaLight>(s, std::make_shared<StripedTexture>(), twoSided)
-                          : std::make_unique<AreaLight>(s, Color(3, 2, 1), twoSided);
+  const auto add = [&](const std::string& name, std::unique_ptr<Shape> shape, bool twoSided,
+                       ColorTexturePtr texture = nullptr) {
+    if (!texture) texture = std::make_shared<ConstantTexture<Color>>(Color(3, 2, 1));
+    auto light = std::make_unique<AreaLight>(shape.get(), std::move(texture), twoSided);
     cases->push_back({name, std::move(shape), std::move(light)});
   };
+  const auto stripes = std::make_shared<StripedTexture>();
+  const auto image = std::make_shared<ImageColorTexture>(std::make_shared<Image>(RandomEnvironment(8, 5, 9)),
+                                                         std::make_shared<UvMapping>());
   const Transform place = Transform::Translate({0.5, 0.25, 2}) * Transform::Rotate(150, {1, 0.2, 0});
   add("sphere", std::make_unique<Sphere>(place, false, 0.5), false);
   add("sphere inside out", std::make_unique<Sphere>(place, true, 3), false);
@@ -85,7 +89,11 @@ void AddAreaLights(std::vector<LightCase>* cases) {
   add("triangle, alone and textured",
       std::make_unique<TriangleMesh>(std::vector<Vec3>{{0, 0, 2.25f}, {0.25f, 1, 2.5f}, {1, 0.25f, 2}},
                                      std::vector<Vec3>{}, std::vector<Vec2>{}, std::vector<int>{0, 1, 2}),
-      true, true);
+      true, stripes);
+  add("triangles textured by an image", Tent(), false, image);
+  add("sphere textured by an image", std::make_unique<Sphere>(place, false, 0.5), false, image);
+  add("disk textured by an image", std::make_unique<Disk>(place, false, 0, 0.75, 0.25, 270), true, image);
+  add("cylinder textured by an image", std::make_unique<Cylinder>(place, false, 0.25, -0.5, 0.75, 360), false, image);
   const std::vector<Vec3> corners = {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {1.5f, 1.25f, 2}};
   const auto patch = [&] {
     return std::make_unique<BilinearMesh>(corners, std::vector<Vec3>{}, std::vector<Vec2>{},
@@ -93,7 +101,7 @@ void AddAreaLights(std::vector<LightCase>* cases) {
   };
   add("bilinear", patch(), false);
   add("bilinear two-sided", patch(), true);
-  add("bilinear textured", patch(), true, true);
+  add("bilinear textured", patch(), true, stripes);
 }
 
 }  // namespace
