@@ -68,17 +68,11 @@ class CompensatedStrategy final : public EnvironmentStrategy {
   explicit CompensatedStrategy(const EnvironmentSpace& space)
       : space_(space), compensated_(space.map.MakeDensity(Threshold(space))) {}
 
-  Vec3 Sample(const LightContext& at, const LiRandom& u) const override {
-    return space_.frame.ToRender(space_.map.Sample(DensityFor(at), u.direction));
-  }
+  Vec3 Sample(const LightContext& at, const LiRandom& u) const override { return space_.Sample(DensityFor(at), u); }
   double Pdf(const LightContext& at, const Vec3&, const EnvironmentPlace& place) const override {
-    return space_.map.DensityAt(DensityFor(at), place);
+    return space_.Pdf(DensityFor(at), place);
   }
-  LiRandom Invert(const LightContext& at, const Vec3& wi) const override {
-    LiRandom u;
-    u.direction = space_.map.Invert(DensityFor(at), space_.frame.ToLight(wi));
-    return u;
-  }
+  LiRandom Invert(const LightContext& at, const Vec3& wi) const override { return space_.Invert(DensityFor(at), wi); }
   TableUse Tables() const override { return TableUse::Of(compensated_.table.MemoryBytes()); }
 
  private:

@@ -48,6 +48,19 @@ struct EnvironmentSpace {
   const Light* light;
   const EnvironmentMap& map;
   const LightFrame& frame;
+
+  // By a table of the map's cells; strategies that have nothing better to go by take the map's own, `map.Density()`.
+  Vec3 Sample(const EnvironmentDensity& density, const LiRandom& u) const {
+    return frame.ToRender(map.Sample(density, u.direction));
+  }
+  double Pdf(const EnvironmentDensity& density, const EnvironmentPlace& place) const {
+    return map.DensityAt(density, place);
+  }
+  LiRandom Invert(const EnvironmentDensity& density, const Vec3& wi) const {
+    LiRandom u;
+    u.direction = map.Invert(density, frame.ToLight(wi));
+    return u;
+  }
 };
 
 /// Null for `Importance`, which is the map's own.

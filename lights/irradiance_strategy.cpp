@@ -124,7 +124,7 @@ const Distribution2D* IrradianceStrategy::TableFor(const LightContext& at) const
 
 Vec3 IrradianceStrategy::Sample(const LightContext& at, const LiRandom& u) const {
   const Distribution2D* const table = TableFor(at);
-  if (!table) return space_.frame.ToRender(space_.map.Sample(u.direction));
+  if (!table) return space_.Sample(space_.map.Density(), u);
   const DiscreteSample2D group = table->SampleDiscrete(u.direction);
   const DiscreteSample row = rows_[IndexOf(group.cell)].SampleDiscrete(group.u.y);
   const int y = group.cell.y * groupSize_.y + row.index;
@@ -135,7 +135,7 @@ Vec3 IrradianceStrategy::Sample(const LightContext& at, const LiRandom& u) const
 }
 
 double IrradianceStrategy::Pdf(const LightContext& at, const Vec3&, const EnvironmentPlace& place) const {
-  const double byRadiance = space_.map.DensityAt(space_.map.Density(), place);
+  const double byRadiance = space_.Pdf(space_.map.Density(), place);
   const Distribution2D* const table = TableFor(at);
   if (!table || byRadiance == 0) return byRadiance;
   const Vec2i group = GroupOf(place.cell);
@@ -143,15 +143,11 @@ double IrradianceStrategy::Pdf(const LightContext& at, const Vec3&, const Enviro
 }
 
 LiRandom IrradianceStrategy::Invert(const LightContext& at, const Vec3& wi) const {
-  LiRandom u;
-  const Vec3d w = space_.frame.ToLight(wi);
   const Distribution2D* const table = TableFor(at);
-  if (!table) {
-    u.direction = space_.map.Invert(w);
-    return u;
-  }
-  const EnvironmentPlace place = space_.map.PlaceOf(w);
-  if (space_.map.DensityAt(space_.map.Density(), place) == 0) return u;
+  if (!table) return space_.Invert(space_.map.Density(), wi);
+  LiRandom u;
+  const EnvironmentPlace place = space_.map.PlaceOf(space_.frame.ToLight(wi));
+  if (space_.Pdf(space_.map.Density(), place) == 0) return u;
   const Vec2i group = GroupOf(place.cell), columns = ColumnsOf(group);
   const Vec2d inCell = space_.map.InvertInCell(place.cell, place.s);
   const double x = space_.map.Density().table.InvertRow(place.cell, columns.x, columns.y, inCell.x);

@@ -20,8 +20,25 @@ double ScatteringToward(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
 
 }  // namespace
 
+/// Those that a receiver has done with serve the next ones of the thread, with the memory that they have got: so a
+/// vertex of a path builds its tree without asking for any. Hardly more than two are in use at once.
 struct ProductStrategy::Tree final : ReceiverTable {
   using ReceiverTable::ReceiverTable;
+
+  /// An empty one.
+  static std::shared_ptr<Tree> For(const Light* light) {
+    std::unique_ptr<Tree> tree;
+    if (Spare().empty()) {
+      tree = std::make_unique<Tree>(light);
+    } else {
+      tree = std::move(Spare().back());
+      Spare().pop_back();
+      tree->light = light;
+      tree->nodes.clear();
+      tree->leaves.clear();
+    }
+    return {tree.release(), [](Tree* done) { Spare().emplace_back(done); }};
+  }
 
   void WeightsBelow(const Node& node, double (&weights)[4]) const {
     for (int i = 0; i < 4; ++i) weights[i] = nodes[static_cast<size_t>(node.firstChild + i)].weight;
@@ -31,6 +48,13 @@ struct ProductStrategy::Tree final : ReceiverTable {
   }
 
   std::vector<Node> nodes;  // the root first, children behind their parent
+  std::vector<int> leaves;  // that may be split: a heap by weight
+
+ private:
+  static std::vector<std::unique_ptr<Tree>>& Spare() {
+    thread_local std::vector<std::unique_ptr<Tree>> spare;
+    return spare;
+  }
 };
 
 ProductStrategy::ProductStrategy(const EnvironmentSpace& space) : space_(space) {
@@ -94,9 +118,10 @@ double ProductStrategy::MeanScattering(const PyramidNode& node, const Bsdf& bsdf
   return sum / light;
 }
 
-void ProductStrategy::Split(int index, const Bsdf& bsdf, const Vec3& wo, std::vector<Node>* nodes) const {
-  const Node parent = (*nodes)[static_cast<size_t>(index)];
-  (*nodes)[static_cast<size_t>(index)].firstChild = static_cast<int>(nodes->size());
+void ProductStrategy::Split(int index, const Bsdf& bsdf, const Vec3& wo, Tree* tree) const {
+  std::vector<Node>& nodes = tree->nodes;
+  const Node parent = nodes[static_cast<size_t>(index)];
+  nodes[static_cast<size_t>(index)].firstChild = static_cast<int>(nodes.size());
   for (int quarter = 0; quarter < 4; ++quarter) {
     Node child{.place = parent.place.Child(quarter)};
     const double light = pyramid_.Weight(child.place);
@@ -104,24 +129,25 @@ void ProductStrategy::Split(int index, const Bsdf& bsdf, const Vec3& wo, std::ve
       child.scattering = std::max(MeanScattering(child.place, bsdf, wo), parent.scattering * kLeastOfParent);
       child.weight = light * child.scattering;
     }
-    nodes->push_back(child);
+    nodes.push_back(child);
   }
 }
 
-void ProductStrategy::Refine(const Bsdf& bsdf, const Vec3& wo, std::vector<Node>* nodes) const {
-  std::vector<int> leaves;  // a heap by weight
-  const auto isLighter = [nodes](int a, int b) {
-    return (*nodes)[static_cast<size_t>(a)].weight < (*nodes)[static_cast<size_t>(b)].weight;
+void ProductStrategy::Refine(const Bsdf& bsdf, const Vec3& wo, Tree* tree) const {
+  std::vector<Node>& nodes = tree->nodes;
+  std::vector<int>& leaves = tree->leaves;
+  const auto isLighter = [&nodes](int a, int b) {
+    return nodes[static_cast<size_t>(a)].weight < nodes[static_cast<size_t>(b)].weight;
   };
   const auto push = [&](int index) {
-    const Node& node = (*nodes)[static_cast<size_t>(index)];
+    const Node& node = nodes[static_cast<size_t>(index)];
     if (!(node.weight > 0) || node.place.level <= finest_) return;
     leaves.push_back(index);
     std::push_heap(leaves.begin(), leaves.end(), isLighter);
   };
-  for (size_t i = 0; i < nodes->size(); ++i) {
-    if ((*nodes)[i].place.level > coarse_) {
-      if ((*nodes)[i].weight > 0) Split(static_cast<int>(i), bsdf, wo, nodes);
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].place.level > coarse_) {
+      if (nodes[i].weight > 0) Split(static_cast<int>(i), bsdf, wo, tree);
     } else {
       push(static_cast<int>(i));
     }
@@ -130,8 +156,8 @@ void ProductStrategy::Refine(const Bsdf& bsdf, const Vec3& wo, std::vector<Node>
     std::pop_heap(leaves.begin(), leaves.end(), isLighter);
     const int index = leaves.back();
     leaves.pop_back();
-    Split(index, bsdf, wo, nodes);
-    for (int i = 0; i < 4; ++i) push((*nodes)[static_cast<size_t>(index)].firstChild + i);
+    Split(index, bsdf, wo, tree);
+    for (int i = 0; i < 4; ++i) push(nodes[static_cast<size_t>(index)].firstChild + i);
   }
 }
 
@@ -139,12 +165,11 @@ std::shared_ptr<const ReceiverTable> ProductStrategy::PrepareReceiver(const Bsdf
   // The mean over the sphere: whatever it is at the root, finer nodes know better.
   const double mean = static_cast<double>(bsdf.Albedo(wo).MaxComponent()) / (4 * kPiD);
   if (!(mean > 0)) return nullptr;
-  auto tree = std::make_shared<Tree>(space_.light);
+  const std::shared_ptr<Tree> tree = Tree::For(space_.light);
   std::vector<Node>& nodes = tree->nodes;
-  nodes.reserve(512);
   const PyramidNode root = pyramid_.Root();
   nodes.push_back({root, mean, mean * pyramid_.Weight(root), -1});
-  Refine(bsdf, wo, &nodes);
+  Refine(bsdf, wo, tree.get());
   for (size_t i = nodes.size(); i-- > 0;) {
     if (nodes[i].firstChild < 0) continue;
     nodes[i].weight = 0;
@@ -155,7 +180,7 @@ std::shared_ptr<const ReceiverTable> ProductStrategy::PrepareReceiver(const Bsdf
 
 Vec3 ProductStrategy::Sample(const LightContext& at, const LiRandom& u) const {
   const Tree* const tree = TreeOf(at);
-  if (!tree) return space_.frame.ToRender(space_.map.Sample(u.direction));
+  if (!tree) return space_.Sample(space_.map.Density(), u);
   Vec2d numbers = u.direction;
   const Node* node = tree->nodes.data();
   while (node->firstChild >= 0) {
@@ -169,7 +194,7 @@ Vec3 ProductStrategy::Sample(const LightContext& at, const LiRandom& u) const {
 
 double ProductStrategy::Pdf(const LightContext& at, const Vec3&, const EnvironmentPlace& place) const {
   const Tree* const tree = TreeOf(at);
-  if (!tree) return space_.map.DensityAt(space_.map.Density(), place);
+  if (!tree) return space_.Pdf(space_.map.Density(), place);
   double probability = 1;
   const Node* node = tree->nodes.data();
   while (node->firstChild >= 0) {
@@ -185,14 +210,10 @@ double ProductStrategy::Pdf(const LightContext& at, const Vec3&, const Environme
 }
 
 LiRandom ProductStrategy::Invert(const LightContext& at, const Vec3& wi) const {
-  LiRandom u;
-  const Vec3d w = space_.frame.ToLight(wi);
   const Tree* const tree = TreeOf(at);
-  if (!tree) {
-    u.direction = space_.map.Invert(w);
-    return u;
-  }
-  const EnvironmentPlace place = space_.map.PlaceOf(w);
+  if (!tree) return space_.Invert(space_.map.Density(), wi);
+  LiRandom u;
+  const EnvironmentPlace place = space_.map.PlaceOf(space_.frame.ToLight(wi));
   if (pyramid_.Weight({0, place.cell}) == 0) return u;
   std::vector<const Node*> path = {tree->nodes.data()};
   while (path.back()->firstChild >= 0)

@@ -44,8 +44,8 @@ class ProductStrategy final : public EnvironmentStrategy {
   const Tree* TreeOf(const LightContext& at) const;
   /// Of the light below a node, the share that is scattered, by the centroids of its four quarters.
   double MeanScattering(const PyramidNode& node, const Bsdf& bsdf, const Vec3& wo) const;
-  void Split(int index, const Bsdf& bsdf, const Vec3& wo, std::vector<Node>* nodes) const;
-  void Refine(const Bsdf& bsdf, const Vec3& wo, std::vector<Node>* nodes) const;
+  void Split(int index, const Bsdf& bsdf, const Vec3& wo, Tree* tree) const;
+  void Refine(const Bsdf& bsdf, const Vec3& wo, Tree* tree) const;
   const Vec3& CentroidOf(const PyramidNode& node) const;
 
   EnvironmentSpace space_;

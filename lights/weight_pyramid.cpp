@@ -83,13 +83,6 @@ WeightPyramid::WeightPyramid(std::span<const double> weights, int width, int hei
   }
 }
 
-double WeightPyramid::Weight(const PyramidNode& node) const {
-  const Level& level = levels_[static_cast<size_t>(node.level)];
-  if (node.at.x >= level.size.x || node.at.y >= level.size.y) return 0;
-  return static_cast<double>(level.weights[static_cast<size_t>(node.at.y) * static_cast<size_t>(level.size.x) +
-                                           static_cast<size_t>(node.at.x)]);
-}
-
 void WeightPyramid::WeightsBelow(const PyramidNode& node, double (&weights)[4]) const {
   for (int quarter = 0; quarter < 4; ++quarter) weights[quarter] = Weight(node.Child(quarter));
 }

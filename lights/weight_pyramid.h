@@ -54,7 +54,12 @@ class WeightPyramid {
   Vec2i Size(int level) const { return levels_[static_cast<size_t>(level)].size; }
   int64_t MemoryBytes() const;
   /// The sum below a node as a share of the largest cell's weight; 0 beyond the border.
-  double Weight(const PyramidNode& node) const;
+  double Weight(const PyramidNode& node) const {
+    const Level& level = levels_[static_cast<size_t>(node.level)];
+    if (node.at.x >= level.size.x || node.at.y >= level.size.y) return 0;
+    return static_cast<double>(level.weights[static_cast<size_t>(node.at.y) * static_cast<size_t>(level.size.x) +
+                                             static_cast<size_t>(node.at.x)]);
+  }
 
   /// A cell below `node` (of a weight above zero); `*u` is stretched from the cell's share to [0, 1)^2.
   PyramidSample Sample(PyramidNode node, Vec2d* u) const;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -488,6 +489,28 @@ TEST(EnvironmentStrategy, ProductFindsASunAtAnyHeight) {
 // Where the sun is below a surface that light does not cross, hardly any draws of the product go there.
 TEST(EnvironmentStrategy, ProductKnowsTheHorizon) {
   EXPECT_LT(DrawsBelowTheHorizon(*MakeLight({"sunny sky", SunnySky()}, EnvironmentSampling::Product)), 200);
+}
+
+// A vertex of a path takes the memory of one before it; those in use at once, of two lights even, stay apart.
+TEST(EnvironmentStrategy, ProductKeepsTheTreesInUseApartAndTakesUpTheOthers) {
+  const auto sunny = MakeLight({"sunny sky", SunnySky()}, EnvironmentSampling::Product);
+  const auto random = MakeLight({"random", RandomEnvironment(16, 8, 1)}, EnvironmentSampling::Product);
+  const Vec3 wi = Normalize(Vec3(0.2f, 0.3f, 1));
+  for (const Receiver& receiver : Receivers()) {
+    const Bsdf bsdf = receiver.MakeBsdf();
+    const auto densities = [&](const LightContext& a, const LightContext& b) {
+      return std::pair(sunny->Pdf_Li(a, wi, nullptr), random->Pdf_Li(b, wi, nullptr));
+    };
+    std::pair<double, double> first;
+    std::set<const ReceiverTable*> used;
+    for (int i = 0; i < 3; ++i) {
+      const LightContext ofSunny = receiver.ContextFor(*sunny, bsdf), ofRandom = receiver.ContextFor(*random, bsdf);
+      if (i == 0) first = densities(ofSunny, ofRandom);
+      EXPECT_EQ(densities(ofSunny, ofRandom), first) << receiver.name;
+      used.insert({ofSunny.TableOf(sunny.get()), ofRandom.TableOf(random.get())});
+    }
+    EXPECT_EQ(used.size(), 2u) << receiver.name;
+  }
 }
 
 }  // namespace
