@@ -24,6 +24,12 @@ IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& o
 /// names an algorithm: then `SelectIntegrator` does.
 bool IsLeftToDapple(std::string_view requested, std::string_view fromScene);
 
+/// True where the algorithm of that name asks lights for directions (`Light::Sample_Li`, or its density) of which any
+/// are drawn; of a name that is not Dapple's: true.
+inline bool DrawsTowardLights(std::string_view integrator, DirectTechnique technique) {
+  return technique != DirectTechnique::Bsdf && integrator != "light_tracing";
+}
+
 /// The user's name, else the scene's where Dapple has it, else `SelectIntegrator`. `requested` may be empty or "auto".
 IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scene, const IntegratorOptions& options,
                                    uint64_t seed);

@@ -24,7 +24,7 @@ enum class EnvironmentEmission {
 struct EnvironmentOptions {
   EnvironmentEmission emission = EnvironmentEmission::Importance;
   EnvironmentSampling sampling = EnvironmentSampling::Importance;  ///< of `Sample_Li`
-  int samples = 1;  ///< `Light::SampleCount`; for so many Compensated makes its table, whatever an integrator takes
+  int samples = 1;  ///< `Light::SampleCount`; for so many Compensated makes its table
 };
 
 class EnvironmentLight final : public Light {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -74,7 +75,8 @@ class StudyRunner {
 
   /// As it is loaded for that integrator.
   const Scene& SceneOf(const std::string& integrator, const std::string& strategy) {
-    std::unique_ptr<Scene>& scene = scenes_[{strategy.empty() && IsLeftToDapple(integrator, ""), strategy}];
+    std::unique_ptr<Scene>& scene = scenes_[{strategy.empty() && IsLeftToDapple(integrator, ""),
+                                             DrawsTowardLights(integrator, options_.scene.direct), strategy}];
     if (!scene) {
       SceneOptions options = options_.scene;
       options.integrator = integrator;
@@ -189,8 +191,9 @@ class StudyRunner {
   std::vector<double> times_;
   std::string name_;
   Diagnostics diagnostics_;
-  std::map<std::pair<bool, std::string>, std::unique_ptr<Scene>> scenes_;  ///< for "auto" or not, by strategy
-  std::vector<std::string> requested_;                                     ///< of each contender; "auto" too
+  /// For "auto" or not, for algorithms that draw toward lights or not, by strategy.
+  std::map<std::tuple<bool, bool, std::string>, std::unique_ptr<Scene>> scenes_;
+  std::vector<std::string> requested_;  ///< of each contender; "auto" too
   Study study_;
 };
 

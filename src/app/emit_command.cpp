@@ -75,6 +75,10 @@ int RunEmit(const EmitCommandOptions& options) {
                                 : FormatNumberOf(static_cast<int64_t>(scene.Lights().size()), "light", "lights"));
   fmt::print("flux      {:.6g} {:.6g} {:.6g} W together\n", flux.x, flux.y, flux.z);
   fmt::print("power     {:.6g} {:.6g} {:.6g} W\n", power.x, power.y, power.z);
+  const SceneResources& resources = scene.Resources();
+  const TableUse tables = resources.environmentTables + resources.lightTables + resources.choiceTables;
+  fmt::print("held      {} ({})\n", FormatNumberOf(tables.count, "table", "tables"),
+             FormatBytes(static_cast<double>(tables.bytes)));
   return kExitSuccess;
 }
 
@@ -84,6 +88,7 @@ void AddEmitCommand(CLI::App& program, Action* action) {
   CLI::App* const command = program.add_subcommand("emit", "Write the rays that a scene's lights emit to a table");
   const auto options = std::make_shared<EmitCommandOptions>();
   options->scene.AddFileTo(command);
+  options->scene.onlyEmission = true;
   command->add_option("-o,--output", options->output, "The table: .csv, .json or .ply")
       ->required()
       ->allow_extra_args(false)

@@ -279,15 +279,19 @@ namespace {
 
 LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics) {
   SceneDescription description = ParsePbrtFile(options.scene, {.pbrtVersion = options.pbrtVersion}, diagnostics);
+  const std::string ofFile = IntegratorNameOf(description);
   if (!options.strategy.empty()) {
     SetStrategy(options, &description);
-  } else if (IsLeftToDapple(options.integrator, IntegratorNameOf(description))) {
+  } else if (IsLeftToDapple(options.integrator, ofFile)) {
     // The algorithm's parts are left to it too: here with less error in the same time (docs/performance.md).
     SetDefaultOnEnvironmentMaps(&description, StringParameter("sampling", "irradiance"));
   }
   BuildOptions build;
   build.resolution = options.resolution;
   build.cropWindow = options.crop;
+  build.drawsTowardLights = !options.onlyEmission &&
+                            DrawsTowardLights(options.integrator.empty() ? ofFile : options.integrator, options.direct);
+  build.lightSamples = options.lightSamples;
   return {description.version, description.versionReason, HashSceneContent(description),
           BuildScene(description, build, diagnostics)};
 }

@@ -48,6 +48,7 @@ struct SceneOptions {
   bool noGuide = false;
   std::optional<int> lightSamples;
   DirectTechnique direct = DirectTechnique::Mis;
+  bool onlyEmission = false;  ///< the command draws from the lights' side alone
   int threads = 0;  ///< 0: one a processor
   /// How infinite lights are sampled, in place of what the file says: SAMPLING/EMISSION, or one name for both sides
   /// where emission knows it too and for next-event estimation where not. Empty: the file's own.

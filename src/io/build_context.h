@@ -4,13 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "src/io/build_scene.h"
 #include "src/io/scene_description.h"
 
 namespace dapple {
 
-/// What the parts are built from; the description and the diagnostics must live as long.
+/// What the parts are built from; all that it refers to must live as long.
 struct BuildContext {
   const SceneDescription& description;
+  const BuildOptions& options;
   Diagnostics& diagnostics;
   /// The world, moved so that what the camera sees is near the origin.
   Transform renderFromWorld;

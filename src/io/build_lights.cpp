@@ -129,9 +129,10 @@ int GetSampleCount(const LightDescription& light) {
 }
 
 /// How an infinite light is sampled: mostly Dapple's own parameters.
-EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
+EnvironmentOptions GetEnvironmentOptions(const BuildContext& context, const LightDescription& light) {
   EnvironmentOptions options;
   options.samples = GetSampleCount(light);
+  if (context.options.lightSamples) options.samples = *context.options.lightSamples;
   const std::string emission = light.params.GetString("emission", "importance");
   if (emission == "uniform") {
     options.emission = EnvironmentEmission::Uniform;
@@ -152,6 +153,8 @@ EnvironmentOptions GetEnvironmentOptions(const LightDescription& light) {
   }
   if (std::find(names.begin(), names.end(), sampling) == names.end())
     FailUnknownName(light.params.LocationOf("sampling", light.location), "sampling", sampling, names);
+  // The map's own table, which it emits from, serves what little is asked then.
+  if (!context.options.drawsTowardLights) options.sampling = EnvironmentSampling::Importance;
   return options;
 }
 
@@ -171,7 +174,7 @@ std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& lig
   const BuildContext& context = values.Context();
   if (const Parameter* portal = light.params.Find("portal"))
     context.diagnostics.Warn(portal->location, "a portal is not supported; the light shines from everywhere");
-  const EnvironmentOptions options = GetEnvironmentOptions(light);
+  const EnvironmentOptions options = GetEnvironmentOptions(context, light);
   const Parameter* fileName = light.params.Find(context.IsV3() ? "mapname" : "filename");
   if (fileName) {
     if (!context.IsV3() && light.params.Has("L"))

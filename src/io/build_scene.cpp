@@ -158,7 +158,7 @@ void Assembler::AddInstance(const InstanceDescription& instance) {
 }  // namespace
 
 SceneParts BuildSceneParts(const SceneDescription& description, const BuildOptions& options, Diagnostics& diagnostics) {
-  const BuildContext context{description, diagnostics, RenderFromWorld(description)};
+  const BuildContext context{description, options, diagnostics, RenderFromWorld(description)};
   SceneParts parts;
   parts.renderToWorld = context.renderFromWorld.Inverse();
   parts.settings = BuildSettings(context, options);

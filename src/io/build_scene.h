@@ -22,6 +22,11 @@ struct BuildOptions {
   std::optional<Vec2i> resolution;
   /// xMin, xMax, yMin, yMax as shares of the image, in [0, 1].
   std::optional<std::array<double, 4>> cropWindow;
+  /// Directions will be drawn toward lights (`Light::Sample_Li`): where not, no table is built for that alone, and
+  /// environments answer by the table that they emit from.
+  bool drawsTowardLights = true;
+  /// How many at a vertex, in place of the lights' own counts.
+  std::optional<int> lightSamples;
 };
 
 /// The parts of the scene, as `Scene` takes them. Throws `Error`.

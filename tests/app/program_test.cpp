@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -410,6 +411,27 @@ TEST_F(Program, ScenesOfTheDocumentationAreReadWithoutAWord) {
     EXPECT_EQ(result.err, "");
     EXPECT_TRUE(Contains(result.out, "light 0: " + light + ", power "));
   }
+}
+
+// So many beside one of the BSDF are what the table of a compensated environment is made for, whoever says so.
+TEST_F(Program, LightSamplesOfTheCommandLineCountForCompensation) {
+  Image sky = Image::Rgb(8, 4);
+  for (size_t i = 0; i < sky.Values().size(); ++i) sky.Values()[i] = static_cast<float>(1 + i % 7);
+  WriteExr(Path("sky.exr"), sky);
+  const auto render = [&](const std::string& samples, const std::string& options) {
+    Write("sky.pbrt",
+          "LookAt 0 -4 1  0 0 0  0 0 1 Camera \"perspective\" Film \"image\" \"integer xresolution\" [8] "
+          "\"integer yresolution\" [8] WorldBegin LightSource \"infinite\" \"string mapname\" \"sky.exr\" "
+          "\"string sampling\" \"compensated\" " +
+              samples + " Shape \"sphere\" WorldEnd");
+    const ProgramResult result = Run("sky.pbrt --integrator path --passes 2 --quiet -o a.exr " + options);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    const Image image = ReadImage(Path("a.exr"));
+    return std::vector<float>(image.Values().begin(), image.Values().end());
+  };
+  const auto ofLight = render("\"integer samples\" [16]", "");
+  EXPECT_EQ(render("", "--light-samples 16"), ofLight);
+  EXPECT_NE(render("", ""), ofLight);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // What a scene lacks costs nothing: what `--stats` counts of whole renders.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -99,6 +100,34 @@ TEST_F(Skip, ASceneWithoutAnEnvironmentBuildsNoTableOfOne) {
   EXPECT_GT(map["tables"]["bytes"], even["tables"]["bytes"]);
   EXPECT_EQ(map["textures"]["opened"], 1);
   EXPECT_EQ(map["textures"]["bytes"], 0) << "the image of a light is not kept";
+}
+
+TEST_F(Skip, NoTableOfDirectionsTowardLightsIsBuiltWhereNoneIsDrawn) {
+  Image sky = Image::Rgb(8, 4);
+  for (size_t i = 0; i < sky.Values().size(); ++i) sky.Values()[i] = static_cast<float>(1 + i % 5);
+  WriteExr(Path("sky.exr"), sky);
+  const auto worldOf = [](const std::string& sampling) {
+    return "LightSource \"infinite\" \"string mapname\" \"sky.exr\" \"string sampling\" \"" + sampling + "\" " +
+           kMatte + kFloor;
+  };
+  const auto tables = [&](const std::string& sampling, const std::string& options) {
+    return Stats(worldOf(sampling), options)["tables"]["environment"].get<int>();
+  };
+  const auto heldByEmit = [&](const std::string& sampling) {
+    Write("scene.pbrt", kHead + worldOf(sampling) + "WorldEnd");
+    const std::string out = Run("emit scene.pbrt -o rays.csv").out;
+    return out.substr(std::min(out.find("held"), out.size()));
+  };
+  const int own = tables("importance", "");
+  const std::string held = heldByEmit("importance");
+  EXPECT_TRUE(Contains(held, fmt::format("{} tables", own))) << held;
+  for (const std::string sampling : {"irradiance", "structured", "compensated", "product"}) {
+    EXPECT_EQ(tables(sampling, ""), own + 1) << sampling;
+    EXPECT_EQ(tables(sampling, "--direct light"), own + 1) << sampling;
+    EXPECT_EQ(tables(sampling, "--direct bsdf"), own) << sampling;
+    EXPECT_EQ(tables(sampling, "--integrator light_tracing"), own) << sampling;
+    EXPECT_EQ(heldByEmit(sampling), held) << sampling;
+  }
 }
 
 TEST_F(Skip, BlackLightsEmitNothingAndGetNoTable) {

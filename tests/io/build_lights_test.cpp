@@ -7,10 +7,11 @@ namespace dapple {
 namespace {
 
 /// A scene with a square at z = 0 (2 x 2, facing the camera) and what `lights` says.
-Built Lit(const std::string& lights, int version, const std::filesystem::path& folder = "") {
+Built Lit(const std::string& lights, int version, const std::filesystem::path& folder = "",
+          const BuildOptions& options = {}) {
   return BuildText("LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nWorldBegin\n\n" + lights +
                        "\n" + Square(version) + (version == 3 ? "WorldEnd\n" : ""),
-                   version, {}, folder);
+                   version, options, folder);
 }
 
 /// What arrives at the world's origin from the only light.
@@ -218,6 +219,30 @@ TEST(BuildLights, SamplesOfInfiniteLights) {
   EXPECT_EQ(Lit(R"(LightSource "infinite" "integer nsamples" 4)", 3)->Lights()[0]->SampleCount(), 4);
   EXPECT_EQ(Lit(R"(LightSource "infinite")", 4)->Lights()[0]->SampleCount(), 1);
   EXPECT_THROW(Lit(R"(LightSource "infinite" "integer samples" 0)", 3), Error);
+}
+
+// Of a sky and dimmer ground: one sample of the light leaves all of the ground to the BSDF, sixteen leave a little.
+TEST(BuildLights, CompensationGoesByTheSamplesThatAreTaken) {
+  const TestFolder folder;
+  Image map = Image::Rgb(8, 4);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x) map.SetColor(x, y, Color(y < 2 ? 1.f : 0.5f));
+  WriteExr((folder.Path() / "map.exr").string(), map);
+  const auto pdfDown = [&](const std::string& ofLight, std::optional<int> asked) {
+    const std::string light = R"(LightSource "infinite" "string mapname" "map.exr" "string sampling" "compensated" )";
+    BuildOptions options;
+    options.lightSamples = asked;
+    const Built built = Lit(light + ofLight, 3, folder.Path(), options);
+    LightContext at(Vec3(0));
+    at.bsdfDrawsToo = true;
+    return built->Lights()[0]->Pdf_Li(at, Normalize(Vec3(0.5f, 0.2f, -1)), nullptr);
+  };
+  const std::string sixteen = R"("integer samples" 16)";
+  EXPECT_EQ(pdfDown("", {}), 0);
+  EXPECT_GT(pdfDown(sixteen, {}), 0);
+  EXPECT_EQ(pdfDown("", 16), pdfDown(sixteen, {}));
+  EXPECT_EQ(pdfDown(R"("integer samples" 2)", 16), pdfDown(sixteen, {}));
+  EXPECT_EQ(pdfDown(sixteen, 1), 0);
 }
 
 TEST(BuildLights, EnvironmentMapsOfBothVersions) {
