@@ -12,6 +12,14 @@ PixelSample SamplePixel(const Scene& scene, const Film& film, const Vec2i& pixel
   return {scene.GetCamera().GenerateRay(position, uLens, sampler.Get1D()), offset.weight};
 }
 
+void CameraWalk::Scatter(const SurfaceInteraction& hit, const BsdfSample& next, LightContext at) {
+  throughput *= next.weight;
+  etaScale *= next.eta * next.eta;
+  isAllSpecular &= next.IsSpecular();
+  last = {next.IsSpecular(), std::move(at), next.pdf};
+  ray = SpawnRay(hit, next.wi);
+}
+
 LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf,
                        const DirectLighting& direct) {
   // The geometric normal: it is what decides, in the BSDF too, from which side light counts. The point is moved off the
@@ -52,6 +60,17 @@ std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteracti
   return next;
 }
 
+std::optional<std::array<BsdfSample, 2>> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit,
+                                                    const Bsdf& bsdf) {
+  constexpr float kLeast = 0.01f;
+  if (!walk.isAllSpecular) return std::nullopt;
+  auto ways = bsdf.SpecularPair(hit.wo);
+  if (!ways) return std::nullopt;
+  for (const BsdfSample& way : *ways)
+    if (!((walk.throughput * way.weight).MaxComponent() >= kLeast)) return std::nullopt;
+  return ways;
+}
+
 double LightPdf(const Scene& scene, const LightContext& at, int index, const Vec3& wi, const SurfaceInteraction* hit,
                 const DirectLighting& direct) {
   const Light& light = *scene.Lights()[static_cast<size_t>(index)];
@@ -72,13 +91,13 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
       });
 }
 
-bool SurvivesRoulette(int scattered, double u, float etaScale, Color* throughput) {
+bool SurvivesRoulette(double u, CameraWalk* walk) {
   constexpr int kSureBounces = 3;
-  if (scattered <= kSureBounces) return true;
-  const float keep = throughput->MaxComponent() * etaScale;
+  if (walk->scattered <= kSureBounces) return true;
+  const float keep = walk->throughput.MaxComponent() * walk->etaScale;
   if (keep >= 1) return true;
   if (!(u < keep)) return false;
-  *throughput /= keep;
+  walk->throughput /= keep;
   return true;
 }
 

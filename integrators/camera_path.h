@@ -1,6 +1,7 @@
 // What camera paths of all integrators share: the first ray, light that a path runs into, light that is sampled for it.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "integrators/integrator.h"
@@ -24,6 +25,21 @@ struct LastScattering {
   bool isSpecular = true;
   LightContext at{Vec3(0)};
   float pdf = 0;  ///< per solid angle, of the direction taken
+};
+
+/// A camera path on its way.
+struct CameraWalk {
+  explicit CameraWalk(const Ray& cameraRay) : ray(cameraRay) {}
+
+  Ray ray;
+  Color throughput{1};
+  LastScattering last;
+  int scattered = 0;
+  bool isAllSpecular = true;  ///< so far
+  float etaScale = 1;         ///< undoes what refraction does to radiance, for `SurvivesRoulette`
+
+  /// Goes on from `hit`; `at`, unless the scattering is specular: where light was asked for.
+  void Scatter(const SurfaceInteraction& hit, const BsdfSample& next, LightContext at = LightContext(Vec3(0)));
 };
 
 /// Radiance that the path's last ray runs into: the sum over the lights it finds of their radiance times
@@ -51,6 +67,12 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
+/// Both ways on where a camera path that met nothing but specular surfaces comes to a smooth interface, so that what
+/// either brings is no matter of chance; nothing where one of them would count for too little. No technique but this
+/// path finds what it will: so no weight of multiple importance sampling changes.
+std::optional<std::array<BsdfSample, 2>> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit,
+                                                    const Bsdf& bsdf);
+
 /// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds the
 /// direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.
 double LightPdf(const Scene& scene, const LightContext& at, int light, const Vec3& wi, const SurfaceInteraction* hit,
@@ -64,9 +86,9 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
                        const DirectLighting& direct = {});
 
 /// True where a path still has its share of energy after Russian roulette, which begins after three scattering events;
-/// scales its throughput. `etaScale` undoes the change of radiance by refraction, which comes back when the path leaves
-/// the medium (pbrt-v4, section 14.5.4).
-bool SurvivesRoulette(int scattered, double u, float etaScale, Color* throughput);
+/// scales its throughput. Radiance that refraction has changed comes back when the path leaves the medium: that change
+/// is left out of the probability (pbrt-v4, section 14.5.4).
+bool SurvivesRoulette(double u, CameraWalk* walk);
 
 /// What a path runs into of a light, times `weight()`.
 template <typename Weight>

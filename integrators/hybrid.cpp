@@ -37,7 +37,7 @@ PassStats HybridIntegrator::RenderPass(int pass, Film& film) const {
   Merging merging{RadiusFactor(pass), film.TracksBlur(), {}};
   PassStats stats = ShootPhotons(pass, &merging);
   const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
-    return Radiance(camera.ray, merging, sampler, tileStats);
+    return Radiance(Walk(camera.ray), merging, sampler, tileStats);
   };
   stats += RenderPixels(*scene_, seed_, pass, plan_->cameraSamples, radiance, film);
   film.FinishPass(pass);
@@ -65,69 +65,65 @@ PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
   return stats;
 }
 
-PathEstimate HybridIntegrator::Radiance(const Ray& ray, const Merging& merging, Sampler& sampler,
-                                        PassStats& stats) const {
-  CameraWalk walk;
-  walk.ray = ray;
-  Color radiance, blur;
-  float etaScale = 1;
+PathEstimate HybridIntegrator::Radiance(Walk walk, const Merging& merging, Sampler& sampler, PassStats& stats) const {
+  PathEstimate estimate;
   for (;;) {
     ++stats.cameraRays;
     const std::optional<SurfaceInteraction> hit = scene_->Intersect(walk.ray);
-    radiance += walk.throughput * EmittedAlong(walk, hit ? &*hit : nullptr, stats);
-    if (!hit) return {radiance, blur};
+    estimate += walk.throughput * EmittedAlong(walk, hit ? &*hit : nullptr, stats);
+    if (!hit) return estimate;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
       walk.ray = SpawnRay(*hit, walk.ray.d);
       continue;
     }
-    if (walk.scattered >= options_.maxDepth) return {radiance, blur};
+    if (walk.scattered >= options_.maxDepth) return estimate;
     const Bsdf bsdf = material->GetBsdf(*hit);
-    if (bsdf.IsBlack()) return {radiance, blur};
+    if (bsdf.IsBlack()) return estimate;
 
     walk.weights.Arrive(static_cast<double>(AbsDot(hit->ng, hit->wo)));
     ++walk.scattered;
     sampler.StartBlock(walk.scattered);
+    if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
+      Walk reflected = walk;
+      reflected.ScatterSpecular(*hit, ways->front());
+      Sampler fork = sampler.Fork();
+      estimate += Radiance(std::move(reflected), merging, fork, stats);
+      walk.ScatterSpecular(*hit, ways->back());
+      continue;
+    }
     const Vec2d uDirection = sampler.Get2D();
     const double uLobe = sampler.Get1D();
     double uContinue = sampler.Get1D();
     walk.last.at = ContextOf(*scene_, *hit, bsdf, options_.direct);
     const MergeSite site = bsdf.IsPurelySpecular() ? MergeSite{} : SiteAt(hit->p, merging);
     if (!bsdf.IsPurelySpecular()) {
-      if (sampler.Get1D() < walk.mergeProbability) {
-        const PathEstimate merged = Merge(walk, merging, site, *hit, bsdf, sampler.BlockSeed(), stats);
-        radiance += walk.throughput * merged.radiance;
-        blur += walk.throughput * merged.blur;
-      }
-      radiance += walk.throughput * SampleDirectLight(walk, site, *hit, bsdf, sampler, stats);
+      if (sampler.Get1D() < walk.mergeProbability)
+        estimate += walk.throughput * Merge(walk, merging, site, *hit, bsdf, sampler.BlockSeed(), stats);
+      estimate += walk.throughput * SampleDirectLight(walk, site, *hit, bsdf, sampler, stats);
     }
 
     const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
-    if (!next) return {radiance, blur};
-    walk.throughput *= next->weight;
-    etaScale *= next->eta * next->eta;
-    const double cosOut = static_cast<double>(AbsDot(hit->ng, next->wi));
-    walk.last.isSpecular = next->IsSpecular();
-    walk.last.pdf = next->pdf;
+    if (!next) return estimate;
     if (next->IsSpecular()) {
-      walk.weights.ScatterSpecular(cosOut);
+      walk.ScatterSpecular(*hit, *next);
     } else {
-      const double pdf = static_cast<double>(next->pdf);
-      const double keep = ContinueProbability(pdf, site.photons);
-      if (uContinue >= keep) return {radiance, blur};
+      const double pdf = static_cast<double>(next->pdf), keep = ContinueProbability(pdf, site.photons);
+      if (uContinue >= keep) return estimate;
       uContinue /= keep;
+      walk.Scatter(*hit, *next, std::move(walk.last.at));
       walk.throughput /= static_cast<float>(keep);
       walk.last.pdf = static_cast<float>(pdf * keep);
       const double reversePdf = static_cast<double>(bsdf.Pdf(next->wi, hit->wo, TransportMode::Importance));
-      walk.weights.Scatter(site.eta * walk.mergeProbability, pdf * keep, reversePdf, 1, cosOut);
+      walk.weights.Scatter(site.eta * walk.mergeProbability, pdf * keep, reversePdf, 1,
+                           static_cast<double>(AbsDot(hit->ng, next->wi)));
       walk.mergeProbability *= Sharpness(pdf);
     }
-    walk.ray = SpawnRay(*hit, next->wi);
-    if (!SurvivesRoulette(walk.scattered, uContinue, etaScale, &walk.throughput)) return {radiance, blur};
+    if (!SurvivesRoulette(uContinue, &walk)) return estimate;
   }
 }
 
-Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit, PassStats& stats) const {
+Color HybridIntegrator::EmittedAlong(const Walk& walk, const SurfaceInteraction* hit, PassStats& stats) const {
   const Ray& ray = walk.ray;
   return dapple::EmittedAlong(*scene_, ray, hit, stats, [&](int index) -> double {
     if (walk.scattered == 0) return 1;
@@ -145,7 +141,7 @@ Color HybridIntegrator::EmittedAlong(const CameraWalk& walk, const SurfaceIntera
   });
 }
 
-Color HybridIntegrator::SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,
+Color HybridIntegrator::SampleDirectLight(const Walk& walk, const MergeSite& site, const SurfaceInteraction& hit,
                                           const Bsdf& bsdf, Sampler& sampler, PassStats& stats) const {
   const auto weigh = [&](int index, const LiSample& li, double pdf) {
     double others = 0;
@@ -167,7 +163,7 @@ Color HybridIntegrator::SampleDirectLight(const CameraWalk& walk, const MergeSit
   return dapple::SampleDirectLight(*scene_, hit, bsdf, walk.last.at, sampler, stats, options_.direct, weigh);
 }
 
-PathEstimate HybridIntegrator::Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at,
+PathEstimate HybridIntegrator::Merge(const Walk& walk, const Merging& merging, const MergeSite& at,
                                      const SurfaceInteraction& hit, const Bsdf& bsdf, uint64_t seed,
                                      PassStats& stats) const {
   ++stats.gathers;

@@ -48,26 +48,29 @@ class HybridIntegrator final : public Integrator {
   };
 
   /// A camera path on its way.
-  struct CameraWalk {
-    Ray ray;
-    Color throughput{1};
-    LastScattering last;
+  struct Walk : CameraWalk {
+    using CameraWalk::CameraWalk;
+
     MergingWeights weights;
     double mergeProbability = 1;
-    int scattered = 0;
+
+    void ScatterSpecular(const SurfaceInteraction& hit, const BsdfSample& next) {
+      Scatter(hit, next);
+      weights.ScatterSpecular(static_cast<double>(AbsDot(hit.ng, next.wi)));
+    }
   };
 
   MergeSite SiteAt(const Vec3& p, const Merging& merging) const;
 
   /// Leaves the map to be filled.
   PassStats ShootPhotons(int pass, Merging* merging) const;
-  PathEstimate Radiance(const Ray& ray, const Merging& merging, Sampler& sampler, PassStats& stats) const;
+  PathEstimate Radiance(Walk walk, const Merging& merging, Sampler& sampler, PassStats& stats) const;
   /// Radiance that the path's last ray runs into, with its weight. `hit` is null where the ray left the scene.
-  Color EmittedAlong(const CameraWalk& walk, const SurfaceInteraction* hit, PassStats& stats) const;
-  Color SampleDirectLight(const CameraWalk& walk, const MergeSite& site, const SurfaceInteraction& hit,
-                          const Bsdf& bsdf, Sampler& sampler, PassStats& stats) const;
+  Color EmittedAlong(const Walk& walk, const SurfaceInteraction* hit, PassStats& stats) const;
+  Color SampleDirectLight(const Walk& walk, const MergeSite& site, const SurfaceInteraction& hit, const Bsdf& bsdf,
+                          Sampler& sampler, PassStats& stats) const;
   /// Radiance of the photons within the radius, with their weights.
-  PathEstimate Merge(const CameraWalk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
+  PathEstimate Merge(const Walk& walk, const Merging& merging, const MergeSite& at, const SurfaceInteraction& hit,
                      const Bsdf& bsdf, uint64_t seed, PassStats& stats) const;
 
   IntegratorOptions options_;

@@ -3,8 +3,7 @@
 // smooth glass or by mirrors, and sees caustics of small lights badly. A pass is one path a pixel.
 #pragma once
 
-#include "integrators/integrator.h"
-#include "src/sampling/sampler.h"
+#include "integrators/camera_path.h"
 
 namespace dapple {
 
@@ -17,8 +16,8 @@ class PathIntegrator final : public Integrator {
   PassStats RenderPass(int pass, Film& film) const override;
   int DefaultPasses() const override { return 64; }
 
-  /// What one path brings back along a ray from the camera; once prepared. Uses the blocks of the sampler after 0.
-  Color Radiance(Ray ray, Sampler& sampler, PassStats& stats) const;
+  /// What one path brings back from where it is, along its ray; once prepared. Uses the blocks of the sampler after 0.
+  Color Radiance(CameraWalk walk, Sampler& sampler, PassStats& stats) const;
 
  private:
   int maxDepth_;

@@ -36,7 +36,7 @@ PassStats PhotonGatherer::RenderPass(int pass, Film& film) const {
   PassStats stats;
   const PhotonPass photons = TracePhotons(pass, film.TracksBlur(), &stats);
   const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
-    return Radiance(camera, photons, sampler, tileStats);
+    return Radiance({camera.ray, rules_.finalGathers}, photons, sampler, tileStats);
   };
   stats += RenderPixels(*scene_, seed_, pass, plan_->cameraSamples, radiance, film);
   film.FinishPass(pass);
@@ -60,58 +60,54 @@ PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, bool tracksBlu
   return photons;
 }
 
-PathEstimate PhotonGatherer::Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler,
-                                      PassStats& stats) const {
-  Ray ray = camera.ray;
-  Color radiance, blur, throughput(1);
-  LastScattering last;
-  float etaScale = 1;
-  bool hasGathered = false, isDone = false;
-  int gathersLeft = rules_.finalGathers;
-  for (int scattered = 0;;) {
+PathEstimate PhotonGatherer::Radiance(Walk walk, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const {
+  PathEstimate estimate;
+  for (;;) {
     ++stats.cameraRays;
-    const std::optional<SurfaceInteraction> hit = scene_->Intersect(ray);
+    const std::optional<SurfaceInteraction> hit = scene_->Intersect(walk.ray);
     // Sources that a gathering surface sees by specular ones reach it as caustic photons.
-    if (!hasGathered || !last.isSpecular)
-      radiance += throughput * EmittedAlong(*scene_, ray, hit ? &*hit : nullptr, last, stats, options_.direct);
-    if (!hit) return {radiance, blur};
+    if (walk.isAllSpecular || !walk.last.isSpecular)
+      estimate +=
+          walk.throughput * EmittedAlong(*scene_, walk.ray, hit ? &*hit : nullptr, walk.last, stats, options_.direct);
+    if (!hit) return estimate;
     const Material* material = scene_->MaterialAt(*hit);
     if (!material) {
-      ray = SpawnRay(*hit, ray.d);
+      walk.ray = SpawnRay(*hit, walk.ray.d);
       continue;
     }
-    if (scattered >= options_.maxDepth || isDone) return {radiance, blur};
+    if (walk.scattered >= options_.maxDepth || walk.isDone) return estimate;
     const Bsdf bsdf = material->GetBsdf(*hit);
-    if (bsdf.IsBlack()) return {radiance, blur};
+    if (bsdf.IsBlack()) return estimate;
 
-    ++scattered;
-    sampler.StartBlock(scattered);
+    ++walk.scattered;
+    sampler.StartBlock(walk.scattered);
+    if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
+      Walk reflected = walk;
+      reflected.Scatter(*hit, ways->front());
+      Sampler fork = sampler.Fork();
+      estimate += Radiance(std::move(reflected), photons, fork, stats);
+      walk.Scatter(*hit, ways->back());
+      continue;
+    }
     const Vec2d uDirection = sampler.Get2D();
     const double uLobe = sampler.Get1D();
     const double uRoulette = sampler.Get1D();
-    const bool isGlossy = IsGlossy(bsdf), goesOn = isGlossy || gathersLeft > 0;
-    const LightContext at = ContextOf(*scene_, *hit, bsdf, options_.direct);
+    const bool isGlossy = IsGlossy(bsdf), goesOn = isGlossy || walk.gathersLeft > 0;
+    LightContext at = ContextOf(*scene_, *hit, bsdf, options_.direct);
     if (!bsdf.IsPurelySpecular()) {
-      radiance += throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
-      const GatherPoint point{*hit, bsdf, options_.maxDepth - scattered, goesOn, sampler.BlockSeed()};
-      const PathEstimate gathered = Gather(photons, point, stats);
-      radiance += throughput * gathered.radiance;
-      blur += throughput * gathered.blur;
+      estimate += walk.throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
+      const GatherPoint point{*hit, bsdf, options_.maxDepth - walk.scattered, goesOn, sampler.BlockSeed()};
+      estimate += walk.throughput * Gather(photons, point, stats);
     }
 
     const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
-    if (!next) return {radiance, blur};
-    throughput *= next->weight;
-    etaScale *= next->eta * next->eta;
-    last = {next->IsSpecular(), at, next->pdf};
-    if (!last.isSpecular) {
-      hasGathered |= goesOn;
-      // Where all photons were gathered, only light straight from its source is left to find.
-      isDone = !goesOn;
-      if (!isGlossy) --gathersLeft;
+    if (!next) return estimate;
+    walk.Scatter(*hit, *next, std::move(at));
+    if (!next->IsSpecular()) {
+      walk.isDone = !goesOn;
+      if (!isGlossy) --walk.gathersLeft;
     }
-    ray = SpawnRay(*hit, next->wi);
-    if (!SurvivesRoulette(scattered, uRoulette, etaScale, &throughput)) return {radiance, blur};
+    if (!SurvivesRoulette(uRoulette, &walk)) return estimate;
   }
 }
 

@@ -65,7 +65,16 @@ class PhotonGatherer : public Integrator {
     bool causticsOnly;
     uint64_t seed;  ///< of the coverage's probes
   };
-  PathEstimate Radiance(const CameraRay& camera, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const;
+  /// A camera path on its way.
+  struct Walk : CameraWalk {
+    Walk(const Ray& cameraRay, int gathers) : CameraWalk(cameraRay), gathersLeft(gathers) {}
+
+    int gathersLeft;
+    /// The last wide scattering was where all photons were gathered: only light straight from its source is left to
+    /// find.
+    bool isDone = false;
+  };
+  PathEstimate Radiance(Walk walk, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const;
   PathEstimate Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const;
   PathEstimate Gather(const Map& map, float radius, bool tracksBlur, const GatherPoint& point, PassStats& stats) const;
 

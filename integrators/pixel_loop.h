@@ -21,7 +21,16 @@ inline Color FiniteSample(const Color& value, PassStats& stats) {
 
 /// What a camera path finds.
 struct PathEstimate {
+  PathEstimate() = default;
   PathEstimate(const Color& found, const Color& foundBlur = Color()) : radiance(found), blur(foundBlur) {}
+  PathEstimate& operator+=(const PathEstimate& other) {
+    radiance += other.radiance;
+    blur += other.blur;
+    return *this;
+  }
+  friend PathEstimate operator*(const Color& throughput, const PathEstimate& estimate) {
+    return {throughput * estimate.radiance, throughput * estimate.blur};
+  }
 
   Color radiance;
   Color blur;  ///< by how much that exceeds what gathers of half the radius give (`Film::AddBlur`)

@@ -119,7 +119,7 @@ std::vector<Place> LookFromCamera(const Scene& scene, const IntegratorOptions& o
         const Vec2d uLens = sampler.Get2D();
         const CameraRay camera = scene.GetCamera().GenerateRay(film, uLens, sampler.Get1D());
         if (k == 0) FindSurface(scene, camera, static_cast<float>(step), sampler, &place);
-        common.Add(static_cast<double>(paths.Radiance(camera.ray, sampler, stats).Average()));
+        common.Add(static_cast<double>(paths.Radiance(CameraWalk(camera.ray), sampler, stats).Average()));
       }
       place.radiance = common.Mean();
       place.variance = common.Variance();

@@ -153,6 +153,18 @@ std::optional<BsdfSample> Bsdf::Sample(const Vec3& wo, double uc, const Vec2d& u
   return FinishNonSpecular(o, *drawn, uMirror, mode);
 }
 
+std::optional<std::array<BsdfSample, 2>> Bsdf::SpecularPair(const Vec3& wo) const {
+  if (count_ != 1 || !IsPurelySpecular()) return std::nullopt;
+  // A lobe's first number chooses its branch.
+  std::optional<BsdfSample> reflected = Sample(wo, 0, Vec2d(0), TransportMode::Radiance);
+  if (!reflected || !reflected->flags.HasReflection() || !(reflected->pdf < 1)) return std::nullopt;
+  std::optional<BsdfSample> transmitted = Sample(wo, 0x1.fffffffffffffp-1, Vec2d(0), TransportMode::Radiance);
+  if (!transmitted || transmitted->flags.HasReflection()) return std::nullopt;
+  reflected->weight *= reflected->pdf;
+  transmitted->weight *= transmitted->pdf;
+  return std::array{*reflected, *transmitted};
+}
+
 std::optional<Bsdf::Sided> Bsdf::DrawPreimage(const Vec3& local, bool allowMirrored, double u, int* count) const {
   Preimages preimages = PreimagesOf(local);
   preimages.mirrored = preimages.mirrored && allowMirrored;

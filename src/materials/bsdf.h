@@ -13,6 +13,7 @@
 // reaches the mirrored directions too, with the exact density.
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <optional>
@@ -89,6 +90,11 @@ class Bsdf {
   /// `uc` chooses the lobe, `u` the direction. Nothing where no light goes on: then the density integrates to less than
   /// one. Lobes are chosen in proportion to their albedo for `wo`.
   std::optional<BsdfSample> Sample(const Vec3& wo, double uc, const Vec2d& u, TransportMode mode) const;
+
+  /// The two ways that radiance comes from at a smooth interface, reflection first, each with its whole share as weight
+  /// (not over pdf), for walks that follow both. Nothing where there is one way, or more than two, or any that is not
+  /// specular.
+  std::optional<std::array<BsdfSample, 2>> SpecularPair(const Vec3& wo) const;
 
   /// An estimate of the hemispherical-directional reflectance and transmittance for `wo`, for demodulation and guides.
   Color Albedo(const Vec3& wo) const;

@@ -140,7 +140,7 @@ float GatherRadius::Widest(const Vec3& p) const {
 
 uint64_t GatherRadius::KeyOf(const Vec3& p, int level) const {
   // A power of two, so that neighbours at nearly the same distance share a grid.
-  const int exponent = std::ilogb(Widest(p) / unit_) + 2 * (level - 1);
+  const int exponent = std::ilogb(Widest(p) / unit_) + 2 * level - 1;
   const Vec3d fromCamera = (ToDouble(p) - ToDouble(camera_)) / static_cast<double>(unit_);
   const auto coordinate = [&](double x) { return static_cast<int64_t>(std::floor(std::ldexp(x, -exponent))); };
   const uint64_t key = Hash(static_cast<uint64_t>(exponent), level, coordinate(fromCamera.x), coordinate(fromCamera.y),

@@ -61,7 +61,7 @@ class GatherRadius {
     uint64_t key = 0;  ///< 0: none
     float density = 0, radius = 0;
   };
-  /// Cells are about a quarter as wide as the widest radius there; level by level four times as wide.
+  /// Cells are about half as wide as the widest radius there; level by level four times as wide.
   static constexpr int kLevels = 3;
 
   /// `kMaxPixels` times the width of a pixel at the distance of `p` from the camera; positive at the camera too.

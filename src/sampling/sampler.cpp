@@ -95,6 +95,14 @@ Sampler Sampler::Branch(int i, int count) const {
   return branch;
 }
 
+Sampler Sampler::Fork() const {
+  constexpr uint64_t kFork = 2;
+  Sampler fork = *this;
+  fork.seed_ = Hash(seed_, kFork, block_);
+  fork.StartBlock(0);
+  return fork;
+}
+
 void Sampler::StartBlock(int block) {
   next_ = 0;
   block_ = block;

@@ -31,6 +31,9 @@ class Sampler {
   /// the `count` (best a power of two) of one path are stratified against each other, and so are those of all paths.
   Sampler Branch(int i, int count) const;
 
+  /// A sampler for a path that parts from this one at the current block and has all blocks to itself.
+  Sampler Fork() const;
+
   /// A seed for random numbers beyond those of the block: of this sample and block alone.
   uint64_t BlockSeed() const { return Hash(seed_, index_, block_); }
 

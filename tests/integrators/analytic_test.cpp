@@ -76,6 +76,21 @@ TEST(IntegratingSphere, Photons) {
     ExpectRadiance(MeanRadiance(IntegratingSphere(0.5), integrator, 128, options), 2, 0.05 * 0.05);
 }
 
+// A lamp behind the camera, seen in a pane of glass before the dark: four per cent of its radiance (index 1.5, head
+// on), which each camera path brings back, for it follows what is reflected and what passes.
+TEST(PaneOfGlass, ReflectsTheSameInEachSample) {
+  const std::string text =
+      Header("0 0 0  0 0 1  0 1 0", 1) +
+      "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0] Translate 0 0 -1 "
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape \"disk\" \"float radius\" [1] AttributeEnd "
+      "Material \"glass\" Translate 0 0 1 Shape \"disk\" \"float radius\" [1] WorldEnd";
+  for (const char* integrator : {"path", "photon_mapping", "sppm", "hybrid"}) {
+    const Estimate estimate = MeanRadiance(text, integrator, 32);
+    EXPECT_NEAR(estimate.mean, 0.04, 1e-6) << integrator;
+    EXPECT_LT(estimate.error, 1e-7) << integrator;
+  }
+}
+
 TEST(GlowingRoom, CornersAreAsBrightAsWalls) {
   // As in the sphere, but seen is a corner, of which most lies within the gather radius of some edge.
   const std::string text = Header("0 0 0  1 1 1  0 0 1", 40) +

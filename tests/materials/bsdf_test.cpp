@@ -161,6 +161,49 @@ TEST(Bsdf, GlassDividesLightByFresnel) {
   EXPECT_EQ(refracted->eta, 1.5f);
 }
 
+// Both ways of a smooth interface together are what sampling it gives in the mean.
+TEST(Bsdf, ASpecularPairIsAllThatSamplingFinds) {
+  const Lobe lobes[] = {SmoothDielectric(1.5f), SmoothDielectric(1 / 1.5f, Color(0.9f, 0.5f, 0.2f), Color(0.3f)),
+                        ThinDielectric(1.5f)};
+  for (const Lobe& lobe : lobes)
+    for (const float tilt : {0.0f, 0.1f})
+      for (const Vec3& wo : {Direction(0.9f, 0.3f), Direction(-0.9f, 1)}) {
+        const Bsdf bsdf = MakeBsdf({"pair", {{lobe, Color(0.5f, 1, 0.7f)}}}, tilt);
+        const auto pair = bsdf.SpecularPair(wo);
+        ASSERT_TRUE(pair);
+        EXPECT_NEAR(pair->front().pdf + pair->back().pdf, 1, 1e-6f);
+        Color shares[2];
+        constexpr int kDraws = 4096;
+        for (int i = 0; i < kDraws; ++i) {
+          const auto drawn = bsdf.Sample(wo, (i + 0.5) / kDraws, {0, 0}, TransportMode::Radiance);
+          ASSERT_TRUE(drawn);
+          const size_t way = drawn->flags.HasReflection() ? 0 : 1;
+          EXPECT_EQ(drawn->wi, (*pair)[way].wi);
+          EXPECT_EQ(drawn->eta, (*pair)[way].eta);
+          shares[way] += drawn->weight / kDraws;
+        }
+        for (size_t way = 0; way < 2; ++way)
+          for (int c = 0; c < 3; ++c) EXPECT_NEAR((*pair)[way].weight[c], shares[way][c], 2.0f / kDraws);
+      }
+}
+
+TEST(Bsdf, OneWayOrManyAreNoSpecularPair) {
+  const auto hasPair = [](const std::vector<Lobe>& lobes, const Vec3& wo) {
+    Bsdf bsdf(TiltedHit(0));
+    for (const Lobe& lobe : lobes) bsdf.Add(lobe, Color(0.5f));
+    return bsdf.SpecularPair(wo).has_value();
+  };
+  const Vec3 above = Direction(0.9f, 0.3f), grazingBelow = Direction(-0.3f, 0.3f);
+  EXPECT_TRUE(hasPair({SmoothDielectric(1.5f)}, above));
+  EXPECT_FALSE(hasPair({SmoothDielectric(1.5f)}, grazingBelow)) << "total reflection";
+  EXPECT_FALSE(hasPair({MirrorReflection(Color(1))}, above));
+  EXPECT_FALSE(hasPair({PassThrough()}, above));
+  EXPECT_FALSE(hasPair({SmoothDielectric(1.5f), PassThrough()}, above)) << "three ways";
+  EXPECT_FALSE(hasPair({SmoothDielectric(1.5f), LambertianReflection(Color(1))}, above));
+  EXPECT_FALSE(hasPair({LambertianReflection(Color(1))}, above));
+  EXPECT_FALSE(hasPair({}, above));
+}
+
 TEST(Bsdf, SpecularWalksAreAdjointUnderBentNormals) {
   // The measurement <h, K g> is the same whichever end the walk starts from; g, h smooth functions on both sides.
   // Radiance walks estimate the integral of h(wo) |ng.wo| K g(wo), light walks that of g(wi) |ng.wi| K* h(wi).

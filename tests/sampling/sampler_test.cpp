@@ -57,6 +57,28 @@ TEST(Sampler, BranchesAreNetsOfTheirOwn) {
   EXPECT_LT(std::abs(other / 1024 * 12) * std::sqrt(1024), 4.5);
 }
 
+// A path that parts from another is as well stratified, and independent of it in each block.
+TEST(Sampler, ForksAreNetsIndependentOfTheirPath) {
+  constexpr int kCount = 4096;
+  double sums[2] = {0, 0};
+  std::vector<Vec2d> points;
+  for (int i = 0; i < kCount; ++i) {
+    Sampler path = Sampler::ForPixel(3, {5, 9}, 2 * i);
+    path.StartBlock(2);
+    Sampler fork = path.Fork(), again = fork;
+    fork.StartBlock(3);
+    path.StartBlock(3);
+    again.StartBlock(2);
+    points.push_back(fork.Get2D());
+    Sampler second = again.Fork();
+    second.StartBlock(3);
+    sums[0] += (points.back().x - 0.5) * (path.Get1D() - 0.5);
+    sums[1] += (points.back().x - 0.5) * (second.Get1D() - 0.5);
+  }
+  ExpectNet(points);
+  for (const double sum : sums) EXPECT_LT(std::abs(sum / kCount * 12) * std::sqrt(kCount), 4.5);
+}
+
 TEST(Sampler, LightPathsOfSuccessivePassesContinueOneSequence) {
   std::vector<Vec2d> points;
   for (int pass : {0, 2, 4, 6})
