@@ -82,7 +82,7 @@ class StudyRunner {
       options.integrator = integrator;
       options.strategy = strategy;
       scene = Load(options, diagnostics_).scene;
-      RequireFilm(scene->Settings(), {}, MachineMemoryBytes());
+      RequireFilm(scene->Settings(), {}, false, MachineMemoryBytes());
     }
     return *scene;
   }

@@ -274,8 +274,8 @@ int RunRender(RenderOptions options) {
     options.outputs.push_back(DefaultOutput(options, scene.Settings()));
     CheckRenderOutput(options.outputs[0]);
   }
-  RequireFilm(scene.Settings(), options.aovs, MachineMemoryBytes());
   RenderPlan plan = MakePlan(scene, options, diagnostics);
+  RequireFilm(scene.Settings(), options.aovs, TracksBlur(options, plan), MachineMemoryBytes());
   plan.budget.error = options.error;
   // What the scene's file says bounds no one who asks for an error.
   if (options.error && !options.passes) plan.budget.passes.reset();

@@ -50,7 +50,8 @@ std::string Decompress(std::string_view compressed, const FileLocation& file) {
     consumed += given - stream.avail_in;
     result.append(buffer.get(), kChunk - stream.avail_out);
     if (result.size() > kInflatesAnyway + kMostInflation * compressed.size())
-      throw Error(file, fmt::format("the gzip data inflates to more than {} times its size", kMostInflation));
+      throw Error(file, fmt::format("the gzip data inflates to more than {} MB and {} times its size",
+                                    kInflatesAnyway >> 20, kMostInflation));
     if (status == Z_STREAM_END) {
       const bool isAnotherMember = compressed.substr(consumed).starts_with("\x1f\x8b");
       if (!isAnotherMember) return result;

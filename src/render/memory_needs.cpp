@@ -43,17 +43,18 @@ double PhotonsOfAPath(const Scene& scene, int maxDepth, uint64_t seed) {
   return sum.paths > 0 ? static_cast<double>(sum.photons) / static_cast<double>(sum.paths) : 0;
 }
 
-int64_t FilmBytes(const RenderSettings& settings, const AovSet& aovs) {
+int64_t FilmBytes(const RenderSettings& settings, const AovSet& aovs, bool tracksBlur) {
   const auto extras = static_cast<int64_t>(FilmChannels(aovs).size());
-  return settings.crop.Area() * static_cast<int64_t>(sizeof(FixedPoint)) * (2 * Color::kComponents + extras);
+  const int colors = tracksBlur ? 4 : 2;
+  return settings.crop.Area() * static_cast<int64_t>(sizeof(FixedPoint)) * (colors * Color::kComponents + extras);
 }
 
 std::string Megabytes(int64_t bytes) { return fmt::format("{} MB", (bytes + 999'999) / 1'000'000); }
 
 }  // namespace
 
-void RequireFilm(const RenderSettings& settings, const AovSet& aovs, int64_t available) {
-  const int64_t pixels = settings.crop.Area(), bytes = FilmBytes(settings, aovs);
+void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracksBlur, int64_t available) {
+  const int64_t pixels = settings.crop.Area(), bytes = FilmBytes(settings, aovs, tracksBlur);
   const std::string size = fmt::format("a picture of {} x {} pixels", settings.crop.Width(), settings.crop.Height());
   if (pixels > kMaxImagePixels)
     throw Error(fmt::format("{}, expected at most {} in all: see --resolution and --crop", size, kMaxImagePixels));
@@ -68,8 +69,7 @@ MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_v
   const int64_t pixels = scene.Settings().crop.Area();
   const auto extras = static_cast<int64_t>(FilmChannels(aovs).size());
   const int64_t channels = extras + Color::kComponents * (aovs.variance ? 2 : 1);
-  needs.film = FilmBytes(scene.Settings(), aovs);
-  if (tracksBlur) needs.film += pixels * static_cast<int64_t>(sizeof(FixedPoint)) * 2 * Color::kComponents;
+  needs.film = FilmBytes(scene.Settings(), aovs, tracksBlur);
   needs.files = std::max(needs.film, pixels * channels * static_cast<int64_t>(sizeof(float)) * kCopiesOfPicture);
   if (StoresPhotons(integrator)) {
     const double perPath = PhotonsOfAPath(scene, options.maxDepth, seed);

@@ -23,10 +23,10 @@ struct MemoryNeeds {
 };
 
 /// Throws `Error` where the picture has more pixels than a file may have, or its film alone takes more than the
-/// `available` bytes.
-void RequireFilm(const RenderSettings& settings, const AovSet& aovs, int64_t available);
+/// `available` bytes. `tracksBlur`: the film does, for the error.
+void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracksBlur, int64_t available);
 
-/// What a light path leaves of photons is counted on a few thousand paths. `tracksBlur`: by the film, for the error.
+/// What a light path leaves of photons is counted on a few thousand paths. `tracksBlur` as above.
 MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
                            const IntegratorOptions& options, uint64_t seed, bool tracksBlur = false);
 

@@ -65,7 +65,7 @@ TEST(TextFile, AFileMadeToFillTheMemoryIsAnError) {
   EXPECT_EQ(ReadTextFile(folder.Write("large.gz", zeros)).size(), std::size_t{40} << 20);
   const auto bomb = folder.Write("bomb.gz", zeros + zeros + zeros + zeros);
   EXPECT_EQ(MessageOf([&] { ReadTextFile(bomb); }),
-            bomb.string() + ": error: the gzip data inflates to more than 100 times its size");
+            bomb.string() + ": error: the gzip data inflates to more than 64 MB and 100 times its size");
 }
 
 TEST(TextFile, MissingFilesAreNamedAtThePlaceThatNamesThem) {
