@@ -81,7 +81,8 @@ class AllIntegratorsAgree : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(AllIntegratorsAgree, BlockByBlock) {
   const Scene scene(PartsOf(GetParam()));
-  constexpr int kPasses = 64;
+  // Errors of 0.1 to 0.7 % a block, in the median.
+  const int passes = GetParam() == "point-glass" ? 32 : 64;
   const auto expectAgreement = [](const std::string& what, const BlockReport& report) {
     std::cout << what << ": " << report.text << "\n";
     EXPECT_GT(report.blocks, 0) << what;
@@ -90,17 +91,16 @@ TEST_P(AllIntegratorsAgree, BlockByBlock) {
   };
   const bool pathSeesAll = PathSeesAll(scene.Facts()), canConnect = scene.GetCamera().CanConnect();
   const std::vector<bool> specular = PixelsOnSpecularSurfaces(scene);
-  const GroupedImages sppm = AtRadiusZero(scene, "sppm", kPasses);
+  const GroupedImages sppm = AtRadiusZero(scene, "sppm", passes);
   GroupedImages path;
-  if (pathSeesAll) path = RenderGroups(scene, "path", Options(), 6 * kPasses, kGroups, 1);
+  if (pathSeesAll) path = RenderGroups(scene, "path", Options(), 6 * passes, kGroups, 1);
   for (const std::string_view name : IntegratorNames()) {
     const std::string integrator(name);
     if (integrator == "path" || (integrator == "light_tracing" && !canConnect)) continue;
     if (integrator == "photon_mapping" && kNoisyFinalGather.contains(GetParam())) continue;
     const bool isLightTracing = integrator == "light_tracing";
-    const int passes = integrator == "hybrid" && !pathSeesAll ? kPasses + kPasses / 2 : kPasses;
     const GroupedImages images = isLightTracing
-                                     ? RenderGroups(scene, integrator, Options(), 2 * kPasses, kGroups, 2)
+                                     ? RenderGroups(scene, integrator, Options(), 2 * passes, kGroups, 2)
                                      : (integrator == "sppm" ? sppm : AtRadiusZero(scene, integrator, passes));
     const std::vector<bool> leftOut = isLightTracing ? specular : std::vector<bool>();
     if (pathSeesAll) {
