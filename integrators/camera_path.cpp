@@ -61,13 +61,12 @@ std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteracti
 }
 
 std::optional<std::array<BsdfSample, 2>> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit,
-                                                    const Bsdf& bsdf) {
-  constexpr float kLeast = 0.01f;
+                                                    const Bsdf& bsdf, float least) {
   if (!walk.isAllSpecular) return std::nullopt;
   auto ways = bsdf.SpecularPair(hit.wo);
   if (!ways) return std::nullopt;
   for (const BsdfSample& way : *ways)
-    if (!((walk.throughput * way.weight).MaxComponent() >= kLeast)) return std::nullopt;
+    if (!((walk.throughput * way.weight).MaxComponent() >= least)) return std::nullopt;
   return ways;
 }
 

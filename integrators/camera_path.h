@@ -68,10 +68,11 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
 /// Both ways on where a camera path that met nothing but specular surfaces comes to a smooth interface, so that what
-/// either brings is no matter of chance; nothing where one of them would count for too little. No technique but this
-/// path finds what it will: so no weight of multiple importance sampling changes.
+/// either brings is no matter of chance; nothing where one of them would count for less than `least` of what the camera
+/// sees (a path that goes on for long costs more than one that soon gathers photons, and may split less). No technique
+/// but this path finds what it will: so no weight of multiple importance sampling changes.
 std::optional<std::array<BsdfSample, 2>> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit,
-                                                    const Bsdf& bsdf);
+                                                    const Bsdf& bsdf, float least = 0.01f);
 
 /// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds the
 /// direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.

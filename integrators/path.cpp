@@ -37,7 +37,8 @@ Color PathIntegrator::Radiance(CameraWalk walk, Sampler& sampler, PassStats& sta
 
     ++walk.scattered;
     sampler.StartBlock(walk.scattered);
-    if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
+    constexpr float kLeastWay = 0.03f;  // less costs more time than it saves
+    if (const auto ways = SplitWayOn(walk, *hit, bsdf, kLeastWay)) {
       CameraWalk reflected = walk;
       reflected.Scatter(*hit, ways->front());
       Sampler fork = sampler.Fork();
