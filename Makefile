@@ -10,7 +10,7 @@ JOBS ?= $(shell memory=$$(awk '/MemAvailable/ { print int($$2 / 1500000) }' /pro
                 [ -n "$$memory" ] && [ "$$memory" -lt "$$processors" ] && processors=$$memory; \
                 [ "$$processors" -ge 1 ] && echo $$processors || echo 1)
 
-.PHONY: help packages build demo test sanitize fuzz bench gallery format clean
+.PHONY: help packages build demo test sanitized-readers sanitize fuzz bench gallery format clean
 
 help:
 	@echo 'make demo    install what is missing, build, render a caustic to build/demo.png'
@@ -41,24 +41,23 @@ demo: packages
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
-# A part of what `ctest --preset asan` and `ctest --preset tsan` run, for integration: all that reads files, under address
-# and undefined; all that threads share, under thread.
-SANITIZED = $(1)/tests/$(2)_tests --gtest_brief=1 --gtest_filter='$(3)'
-sanitize: packages
-	@cmake --preset asan
-	@cmake --build build/asan --parallel $(JOBS) --target image_tests io_tests
-	@$(call SANITIZED,build/asan,image,-Flip*:Filter*)
-	@$(call SANITIZED,build/asan,io,*)
-	@cmake --preset tsan
-	@cmake --build build/tsan --parallel $(JOBS) --target base_tests render_tests
-	@export TSAN_OPTIONS=suppressions=tests/tsan_suppressions.txt; \
-	  $(call SANITIZED,build/tsan,base,Parallel*:ThreadLimit*) && $(call SANITIZED,build/tsan,render,*NonFinite*:*Aov*:*Driver*)
-
-SECONDS ?= 10
-fuzz: packages
+# The readers and all that they need, by clang under the address and undefined-behaviour sanitizers.
+sanitized-readers: packages
 	@scripts/install_packages.sh clang libclang-rt-14-dev
 	@cmake --preset fuzz
 	@cmake --build build/fuzz --parallel $(JOBS)
+
+# A part of what `ctest --preset asan` and `ctest --preset tsan` run, for integration: the tests of all that reads files, and of
+# what all that runs in parallel goes through.
+sanitize: sanitized-readers
+	@build/fuzz/tests/fuzz/image_tests --gtest_brief=1 --gtest_filter='-Flip*:Filter*'
+	@build/fuzz/tests/fuzz/io_tests --gtest_brief=1
+	@cmake --preset tsan
+	@cmake --build build/tsan --parallel $(JOBS) --target base_tests
+	@TSAN_OPTIONS=suppressions=tests/tsan_suppressions.txt build/tsan/tests/base_tests --gtest_brief=1
+
+SECONDS ?= 10
+fuzz: sanitized-readers
 	@scripts/fuzz -seconds $(SECONDS)
 
 bench: build

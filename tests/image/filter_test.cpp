@@ -88,7 +88,10 @@ TEST(Filter, InterpolationIsWithinItsBound) {
 }
 
 TEST(Filter, IntegralMatchesTheValuesAndDensityIntegratesToOne) {
-  for (const auto& [name, filter] : AllFilters()) {
+  for (const auto& named : AllFilters()) {
+    // Lambdas of clang 14 capture no structured bindings.
+    const auto& name = named.name;
+    const auto& filter = named.filter;
     if (name == "gaussian v4, needle") continue;  // the grid is too coarse for it; its closed form is tested above
     EXPECT_NEAR(Integrate(filter, [&](double x, double y) { return filter.Evaluate(x, y); }) / filter.Integral(), 1,
                 2e-3)
@@ -150,7 +153,10 @@ double WeightedMean(const Filter& filter, G g, H h) {
 
 // Camera samples and splats must reconstruct the same image: moments of f by sampling and by integration agree.
 TEST(Filter, WeightedMomentsAreThoseOfTheFilter) {
-  for (const auto& [name, filter] : AllFilters()) {
+  for (const auto& named : AllFilters()) {
+    // Lambdas of clang 14 capture no structured bindings.
+    const auto& name = named.name;
+    const auto& filter = named.filter;
     EXPECT_NEAR(WeightedMean(
                     filter, [](double) { return 1.; }, [](double) { return 1.; }),
                 1, 2e-3)
