@@ -60,14 +60,15 @@ std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteracti
   return next;
 }
 
-std::optional<std::array<BsdfSample, 2>> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit,
-                                                    const Bsdf& bsdf, float least) {
+std::optional<WaysOn> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit, const Bsdf& bsdf) {
+  constexpr float kLeast = 0.01f;
   if (!walk.isAllSpecular) return std::nullopt;
-  auto ways = bsdf.SpecularPair(hit.wo);
-  if (!ways) return std::nullopt;
-  for (const BsdfSample& way : *ways)
-    if (!((walk.throughput * way.weight).MaxComponent() >= least)) return std::nullopt;
-  return ways;
+  const auto pair = bsdf.SpecularPair(hit.wo);
+  if (!pair) return std::nullopt;
+  // What refraction does to radiance comes back where the path leaves the medium: with it ways would be without number.
+  for (const BsdfSample& way : *pair)
+    if (!((walk.throughput * way.weight).MaxComponent() * walk.etaScale * Sqr(way.eta) >= kLeast)) return std::nullopt;
+  return WaysOn{pair->front(), pair->back()};
 }
 
 double LightPdf(const Scene& scene, const LightContext& at, int index, const Vec3& wi, const SurfaceInteraction* hit,

@@ -1,7 +1,6 @@
 // What camera paths of all integrators share: the first ray, light that a path runs into, light that is sampled for it.
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include "integrators/integrator.h"
@@ -67,12 +66,16 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
+/// What comes by the two ways of a smooth interface.
+struct WaysOn {
+  BsdfSample reflected, transmitted;  ///< each with its whole share as weight
+};
+
 /// Both ways on where a camera path that met nothing but specular surfaces comes to a smooth interface, so that what
-/// either brings is no matter of chance; nothing where one of them would count for less than `least` of what the camera
-/// sees (a path that goes on for long costs more than one that soon gathers photons, and may split less). No technique
-/// but this path finds what it will: so no weight of multiple importance sampling changes.
-std::optional<std::array<BsdfSample, 2>> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit,
-                                                    const Bsdf& bsdf, float least = 0.01f);
+/// either brings is no matter of chance; nothing where one of them would count for less than a hundredth of what the
+/// camera sees. All techniques that find the paths behind share this beginning, so no weight of multiple importance
+/// sampling changes. For walks that soon end in a gather of photons; it would cost long paths more time than it saves.
+std::optional<WaysOn> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit, const Bsdf& bsdf);
 
 /// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds the
 /// direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.

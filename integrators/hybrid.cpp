@@ -86,10 +86,10 @@ PathEstimate HybridIntegrator::Radiance(Walk walk, const Merging& merging, Sampl
     sampler.StartBlock(walk.scattered);
     if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
       Walk reflected = walk;
-      reflected.ScatterSpecular(*hit, ways->front());
+      reflected.ScatterSpecular(*hit, ways->reflected);
       Sampler fork = sampler.Fork();
       estimate += Radiance(std::move(reflected), merging, fork, stats);
-      walk.ScatterSpecular(*hit, ways->back());
+      walk.ScatterSpecular(*hit, ways->transmitted);
       continue;
     }
     const Vec2d uDirection = sampler.Get2D();

@@ -37,15 +37,6 @@ Color PathIntegrator::Radiance(CameraWalk walk, Sampler& sampler, PassStats& sta
 
     ++walk.scattered;
     sampler.StartBlock(walk.scattered);
-    constexpr float kLeastWay = 0.03f;  // less costs more time than it saves
-    if (const auto ways = SplitWayOn(walk, *hit, bsdf, kLeastWay)) {
-      CameraWalk reflected = walk;
-      reflected.Scatter(*hit, ways->front());
-      Sampler fork = sampler.Fork();
-      radiance += Radiance(std::move(reflected), fork, stats);
-      walk.Scatter(*hit, ways->back());
-      continue;
-    }
     const Vec2d uDirection = sampler.Get2D();
     const double uLobe = sampler.Get1D();
     const double uRoulette = sampler.Get1D();

@@ -1,7 +1,6 @@
 // Unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986; Veach 1997,
 // chapter 9; pbrt-v4, section 14.5): the reference for all that it can see. It cannot see light of delta lights through
-// smooth glass or by mirrors, and sees caustics of small lights badly. A pass is one path a pixel, which goes both ways
-// where it comes to smooth glass first (`SplitWayOn`).
+// smooth glass or by mirrors, and sees caustics of small lights badly. A pass is one path a pixel.
 #pragma once
 
 #include "integrators/camera_path.h"

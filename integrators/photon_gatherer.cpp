@@ -83,10 +83,10 @@ PathEstimate PhotonGatherer::Radiance(Walk walk, const PhotonPass& photons, Samp
     sampler.StartBlock(walk.scattered);
     if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
       Walk reflected = walk;
-      reflected.Scatter(*hit, ways->front());
+      reflected.Scatter(*hit, ways->reflected);
       Sampler fork = sampler.Fork();
       estimate += Radiance(std::move(reflected), photons, fork, stats);
-      walk.Scatter(*hit, ways->back());
+      walk.Scatter(*hit, ways->transmitted);
       continue;
     }
     const Vec2d uDirection = sampler.Get2D();

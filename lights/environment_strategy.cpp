@@ -60,8 +60,9 @@ class CosineStrategy final : public EnvironmentStrategy {
 /// Radiance less its mean (Karlik et al. 2019, "MIS compensation: optimizing sampling techniques in multiple importance
 /// sampling", for as many samples of the light as of the BSDF): where the map is dimmer the density is zero, and BSDF
 /// sampling alone finds its light. Where the light draws N directions for one of the BSDF, less is left to that: here
-/// 2 / (N + 1) of the mean, with N the light's count; the estimate is unbiased whatever an integrator takes. Without BSDF sampling beside it the light below would be lost, so then the map's own
-/// density is used; so it is where nothing exceeds the threshold.
+/// 2 / (N + 1) of the mean, with N the light's count; beside BSDF sampling the estimate is unbiased with any other
+/// count. Without BSDF sampling the light below would be lost, so then the map's own density is used; so it is where
+/// nothing exceeds the threshold.
 class CompensatedStrategy final : public EnvironmentStrategy {
  public:
   explicit CompensatedStrategy(const EnvironmentSpace& space)

