@@ -60,7 +60,7 @@ TEST(Sampler, BranchesAreNetsOfTheirOwn) {
 // A path that parts from another is as well stratified, and independent of it in each block.
 TEST(Sampler, ForksAreNetsIndependentOfTheirPath) {
   constexpr int kCount = 4096;
-  double sums[2] = {0, 0};
+  double sums[3] = {0, 0, 0};
   std::vector<Vec2d> points;
   for (int i = 0; i < kCount; ++i) {
     Sampler path = Sampler::ForPixel(3, {5, 9}, 2 * i);
@@ -74,6 +74,10 @@ TEST(Sampler, ForksAreNetsIndependentOfTheirPath) {
     second.StartBlock(3);
     sums[0] += (points.back().x - 0.5) * (path.Get1D() - 0.5);
     sums[1] += (points.back().x - 0.5) * (second.Get1D() - 0.5);
+    // Path stands at block 3 by now: another fork than the one at block 2.
+    Sampler sibling = path.Fork();
+    sibling.StartBlock(3);
+    sums[2] += (points.back().x - 0.5) * (sibling.Get1D() - 0.5);
   }
   ExpectNet(points);
   for (const double sum : sums) EXPECT_LT(std::abs(sum / kCount * 12) * std::sqrt(kCount), 4.5);
