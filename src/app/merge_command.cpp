@@ -33,6 +33,7 @@ int RunMerge(const MergeOptions& options) {
   if (isFinal || options.passes) RequireAllPasses(whole.film, options.passes);
   WriteRenderOutputs(options.outputs, whole.origin, RecordOf(whole), whole.film);
   for (const std::string& output : options.outputs) fmt::print("{}\n", output);
+  WarnOfNonFinite(whole.film);
   fmt::print("passes    {} of {}\n", whole.film.Passes().ToString(),
              FormatNumberOf(static_cast<int64_t>(options.parts.size()), "file", "files"));
   if (const auto error = EstimateError(whole.film, whole.origin.exposure))

@@ -97,19 +97,10 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
   fmt::print("memory    {} at its peak\n", FormatBytes(static_cast<double>(PeakMemoryBytes())));
 }
 
-/// A picture of fewer samples than were paid for must not go unnoticed, however quiet the render.
-void WarnOfNonFinite(const Film& film, const NonFiniteCounts& counts, const Scene& scene) {
-  if (film.NonFiniteCount() == 0) return;
-  const std::string sources = DescribeNonFinite(counts, scene);
-  Tell(fmt::format("warning: {} left out: infinite, not a number, or too large{}{}",
-                   FormatNumberOf(film.NonFiniteCount(), "contribution was", "contributions were"),
-                   sources.empty() ? "" : ": ", sources));
-}
-
 RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded, const RenderPlan& plan,
                         const Film& film) {
   RenderOrigin origin;
-  origin.identity = MakeIdentity(loaded.contentHash, film, options.aovs, plan.choice.name, plan.options, plan.seed);
+  origin.identity = MakeIdentity(loaded.identity, film, options.aovs, plan.choice.name, plan.options, plan.seed);
   origin.record.scene = std::filesystem::path(options.scene).filename().string();
   origin.record.integrator = plan.choice.name;
   origin.record.seed = plan.seed;
@@ -252,7 +243,7 @@ int Finish(const RenderOptions& options, const RenderOrigin& origin, const Rende
   if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
   if (!options.statistics.empty())
     WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film, scene));
-  WarnOfNonFinite(film, result.stats.nonFinite, scene);
+  WarnOfNonFinite(film);
   WarnOfError(options, error);
   if (!options.isQuiet) PrintSummary(result, needs, film, error);
   if (result.stopped && isSaved) {

@@ -15,4 +15,7 @@ void CheckRenderOutput(const std::string& path);
 void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
                         const Film& film);
 
+/// A picture of fewer samples than were paid for must not go unnoticed, however quiet the render.
+void WarnOfNonFinite(const Film& film);
+
 }  // namespace dapple

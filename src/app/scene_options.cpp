@@ -292,7 +292,10 @@ LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics)
   build.drawsTowardLights = !options.onlyEmission &&
                             DrawsTowardLights(options.integrator.empty() ? ofFile : options.integrator, options.direct);
   build.lightSamples = options.lightSamples;
-  return {description.version, description.versionReason, HashSceneContent(description),
+  // Where no direction is drawn all ways to draw them give the same bits.
+  SceneIdentity identity{HashSceneContent(description),
+                         build.drawsTowardLights ? DescribeEnvironmentSampling(description) : "none"};
+  return {description.version, description.versionReason, std::move(identity),
           BuildScene(description, build, diagnostics)};
 }
 

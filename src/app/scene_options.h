@@ -17,6 +17,7 @@
 #include "integrators/select.h"
 #include "src/io/build_scene.h"
 #include "src/render/driver.h"
+#include "src/render/render_identity.h"
 
 namespace dapple {
 
@@ -49,7 +50,7 @@ struct SceneOptions {
   std::optional<int> lightSamples;
   DirectTechnique direct = DirectTechnique::Mis;
   bool onlyEmission = false;  ///< the command draws from the lights' side alone
-  int threads = 0;  ///< 0: one a processor
+  int threads = 0;            ///< 0: one a processor
   /// How infinite lights are sampled, in place of what the file says: SAMPLING/EMISSION, or one name for both sides
   /// where emission knows it too and for next-event estimation where not. Empty: the file's own.
   std::string strategy;
@@ -65,7 +66,7 @@ struct SceneOptions {
 struct LoadedScene {
   int version = 0;
   std::string versionReason;
-  std::string contentHash;  ///< `HashSceneContent`
+  SceneIdentity identity;
   std::unique_ptr<Scene> scene;
 };
 

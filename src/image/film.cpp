@@ -1,5 +1,6 @@
 #include "src/image/film.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <new>
@@ -14,8 +15,8 @@ namespace dapple {
 namespace {
 
 // What stands first in a serialised film; the ranges of its passes follow, the names of the extra channels with a line
-// end behind each, the sums of both halves, those of their blurs, and those of the extra channels. All little-endian,
-// as memory is here.
+// end behind each, what gave values that are not finite (a line "COUNT SOURCE" each), the sums of both halves, those of
+// their blurs, and those of the extra channels. All little-endian, as memory is here.
 struct FilmHeader {
   char mark[8];
   uint32_t version;
@@ -24,18 +25,18 @@ struct FilmHeader {
   int32_t cropMinX, cropMinY, cropMaxX, cropMaxY;
   double filterRadiusX, filterRadiusY, filterP, filterQ;
   uint64_t passRanges;
-  uint64_t nonFinite;
+  uint64_t refused;
   uint32_t extraNameBytes;
   float clamp;  // 0: none
   uint32_t tracksBlur;
-  uint32_t unused;
+  uint32_t nonFiniteBytes;
 };
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(PassRange) == 16 && std::is_trivially_copyable_v<PassRange>);
 static_assert(sizeof(FilmHeader) == 104 && std::is_trivially_copyable_v<FilmHeader>);
 
 constexpr char kMark[8] = {'D', 'A', 'P', 'P', 'L', 'E', 'F', 'M'};
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 
 // The most pixels that a filter can touch along one axis: its radius is at most 64.
 constexpr int kMaxFootprint = 130;
@@ -247,13 +248,26 @@ void Film::Merge(const Film& other) {
     add(blurs_[half], other.blurs_[half]);
   }
   for (size_t i = 0; i < extras_.size(); ++i) extras_[i] += other.extras_[i];
-  nonFinite_ += other.nonFinite_;
+  refused_ += other.refused_;
+  for (const auto& [source, count] : other.nonFiniteBySource_) CountNonFinite(source, count);
 }
 
 std::string Film::ExtraNames() const {
   std::string names;
   for (const std::string& name : extraChannels_) names += name + '\n';
   return names;
+}
+
+std::string Film::NonFiniteLines() const {
+  std::string lines;
+  for (const auto& [source, count] : nonFiniteBySource_) lines += fmt::format("{} {}\n", count, source);
+  return lines;
+}
+
+int64_t Film::NonFiniteCount() const {
+  int64_t count = RefusedCount();
+  for (const auto& [source, ofSource] : nonFiniteBySource_) count += ofSource;
+  return count;
 }
 
 std::vector<std::byte> Film::Serialize() const {
@@ -273,13 +287,14 @@ std::vector<std::byte> Film::Serialize() const {
   header.filterP = filter.p;
   header.filterQ = filter.q;
   header.passRanges = passes_.All().size();
-  header.nonFinite = nonFinite_;
-  const std::string names = ExtraNames();
+  header.refused = refused_;
+  const std::string names = ExtraNames(), nonFinite = NonFiniteLines();
   header.extraNameBytes = static_cast<uint32_t>(names.size());
+  header.nonFiniteBytes = static_cast<uint32_t>(nonFinite.size());
   header.clamp = clamp_.value_or(0);
   header.tracksBlur = TracksBlur() ? 1 : 0;
   const std::vector<PassRange>& ranges = passes_.All();
-  std::vector<std::byte> bytes(sizeof(header) + ranges.size() * sizeof(PassRange) + names.size() +
+  std::vector<std::byte> bytes(sizeof(header) + ranges.size() * sizeof(PassRange) + names.size() + nonFinite.size() +
                                2 * (sums_[0].size() + blurs_[0].size()) * sizeof(PixelSums) +
                                extras_.size() * sizeof(FixedPoint));
   size_t end = 0;
@@ -290,6 +305,7 @@ std::vector<std::byte> Film::Serialize() const {
   append(std::as_bytes(std::span(&header, 1)));
   append(std::as_bytes(std::span(ranges)));
   append(std::as_bytes(std::span(names)));
+  append(std::as_bytes(std::span(nonFinite)));
   for (const auto& sums : sums_) append(std::as_bytes(std::span(sums)));
   for (const auto& blurs : blurs_) append(std::as_bytes(std::span(blurs)));
   append(std::as_bytes(std::span(extras_)));
@@ -315,8 +331,12 @@ Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& loc
   };
   const PassRanges passes =
       ReadPasses(take(std::min<size_t>(header.passRanges, rest.size()) * sizeof(PassRange)), location);
-  const std::span<const std::byte> names = take(header.extraNameBytes);
-  const auto extraChannels = SplitLines({reinterpret_cast<const char*>(names.data()), names.size()});
+  const auto takeLines = [&](size_t count) {
+    const std::span<const std::byte> text = take(count);
+    return SplitLines({reinterpret_cast<const char*>(text.data()), text.size()});
+  };
+  const std::vector<std::string> extraChannels = takeLines(header.extraNameBytes);
+  const std::vector<std::string> nonFinite = takeLines(header.nonFiniteBytes);
   const auto pixels = static_cast<size_t>(crop.Area());
   const size_t images = header.tracksBlur != 0 ? 4 : 2;
   const size_t sumBytes = pixels * (images * sizeof(PixelSums) + extraChannels.size() * sizeof(FixedPoint));
@@ -336,7 +356,14 @@ Film Film::Deserialize(std::span<const std::byte> bytes, const FileLocation& loc
   for (auto& blurs : film.blurs_) read(blurs);
   read(film.extras_);
   film.passes_ = passes;
-  film.nonFinite_ = header.nonFinite;
+  film.refused_ = header.refused;
+  for (const std::string& line : nonFinite) {
+    int64_t count = 0;
+    const auto [end, status] = std::from_chars(line.data(), line.data() + line.size(), count);
+    if (status != std::errc() || !line.substr(static_cast<size_t>(end - line.data())).starts_with(' '))
+      throw Error(location, "stored film with counts that make no sense");
+    film.CountNonFinite(line.substr(static_cast<size_t>(end - line.data()) + 1), count);
+  }
   return film;
 }
 

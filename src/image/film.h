@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -117,11 +118,15 @@ class Film {
   const PassRanges& Passes() const { return passes_; }
   int64_t PassCount() const { return passes_.Count(); }
   int64_t PassCount(int half) const { return passes_.Count(half); }
-  /// Counts contributions that were left out before they came here: infinite or NaN.
-  void CountNonFinite(int64_t count) { nonFinite_ += static_cast<uint64_t>(count); }
-  /// How many these are, with the samples and splats that were refused here: a channel infinite, NaN, or at least 2^40
-  /// in magnitude.
-  int64_t NonFiniteCount() const { return static_cast<int64_t>(nonFinite_); }
+  /// Counts contributions that were left out before they came here, infinite or NaN, and what gave them (a text of one
+  /// line).
+  void CountNonFinite(const std::string& source, int64_t count) { nonFiniteBySource_[source] += count; }
+  /// How many these are, of all passes in the film.
+  const std::map<std::string, int64_t>& NonFiniteBySource() const { return nonFiniteBySource_; }
+  /// How many samples and splats were refused here: a channel infinite, NaN, or at least 2^40 in magnitude.
+  int64_t RefusedCount() const { return static_cast<int64_t>(refused_); }
+  /// Both together.
+  int64_t NonFiniteCount() const;
 
   /// The mean of all passes: R, G, B of the crop, with its place in the picture. Black before the first pass.
   Image ToImage() const;
@@ -163,10 +168,11 @@ class Film {
   void Add(PixelSums& sums, const Color& value);
   template <typename F>
   void ForEachLockedTile(const PixelBounds& pixels, F addToPixels);
-  void Refuse() { std::atomic_ref(nonFinite_).fetch_add(1, std::memory_order_relaxed); }
+  void Refuse() { std::atomic_ref(refused_).fetch_add(1, std::memory_order_relaxed); }
   template <typename F>
   Image MakeImage(int64_t passes, F sumOfPixel) const;
   std::string ExtraNames() const;
+  std::string NonFiniteLines() const;
 
   Vec2i fullResolution_;
   PixelBounds crop_;
@@ -176,7 +182,8 @@ class Film {
   std::array<std::vector<PixelSums>, 2> sums_, blurs_;  // blurs: empty where they are not tracked
   std::vector<FixedPoint> extras_;                      // pixels in rows, channels interleaved
   PassRanges passes_;
-  uint64_t nonFinite_ = 0;
+  uint64_t refused_ = 0;
+  std::map<std::string, int64_t> nonFiniteBySource_;
   std::vector<uint8_t> tileLocks_;  // one for each kTileSide x kTileSide pixels; 1 while a splat is added there
 };
 

@@ -111,6 +111,9 @@ void BuildFilm(const BuildContext& context, const BuildOptions& options, RenderS
   }
   const Vec2i own(GetResolution(film, "xresolution", 1280), GetResolution(film, "yresolution", 720));
   settings->resolution = options.resolution.value_or(own);
+  if (!options.resolution)
+    settings->resolutionLocation =
+        film.params.LocationOf(own.x >= own.y ? "xresolution" : "yresolution", film.location);
   SetCrop(context, options, own, settings);
   settings->outputFile = film.params.GetString("filename", "");
   film.params.GetFloat("diagonal", 35);  // matters to "realistic" cameras alone

@@ -39,6 +39,15 @@ float TargetFactor(const BuildContext& context, const Entity& light, std::string
   return target > 0 && reached > 0 ? static_cast<float>(target / reached) : 1;
 }
 
+/// `emission`, which a light is made with; an Error where it is beyond the range of numbers. (A power that is beyond it
+/// is cut there: such a light is drawn, and what it gives is too much for the film.)
+Color InRange(const Entity& light, const Color& emission) {
+  if (emission.IsFinite()) return emission;
+  throw Error(light.location, fmt::format("light \"{}\" sends ({}, {}, {}), expected finite numbers: its colour, scale "
+                                          "or power is too large",
+                                          light.type, emission.r, emission.g, emission.b));
+}
+
 void CheckDirection(const LightDescription& light, const Vec3d& direction) {
   if (LengthSquared(direction) > 0) return;
   throw Error(light.params.LocationOf("to", light.location),
@@ -51,7 +60,7 @@ std::unique_ptr<Light> BuildPoint(const Values& values, const LightDescription& 
   // pbrt-v3 adds "from" behind the transform, pbrt-v4 transforms it.
   const Vec3d world = context.IsV3() ? light.worldFromLight.Point(Vec3d(0)) + from : light.worldFromLight.Point(from);
   const Color I = GetEmission(values, light, "I") * TargetFactor(context, light, "power", 4 * kPiD);
-  return std::make_unique<PointLight>(ToFloat(context.renderFromWorld.Point(world)), I);
+  return std::make_unique<PointLight>(ToFloat(context.renderFromWorld.Point(world)), InRange(light, I));
 }
 
 std::unique_ptr<Light> BuildSpot(const Values& values, const LightDescription& light) {
@@ -64,8 +73,8 @@ std::unique_ptr<Light> BuildSpot(const Values& values, const LightDescription& l
   const double cosEnd = std::cos(Radians(cone)), cosStart = std::cos(Radians(cone - delta));
   const double reached = 2 * kPiD * ((1 - cosStart) + (cosStart - cosEnd) / 2);
   const Color I = GetEmission(values, light, "I") * TargetFactor(context, light, "power", reached);
-  return std::make_unique<SpotLight>(ToFloat(renderFromLight.Point(from)), ToFloat(Normalize(axis)), I, cone,
-                                     cone - delta, context.IsV3() ? SpotFalloff::PbrtV3 : SpotFalloff::PbrtV4);
+  return std::make_unique<SpotLight>(ToFloat(renderFromLight.Point(from)), ToFloat(Normalize(axis)), InRange(light, I),
+                                     cone, cone - delta, context.IsV3() ? SpotFalloff::PbrtV3 : SpotFalloff::PbrtV4);
 }
 
 std::unique_ptr<Light> BuildDistant(const Values& values, const LightDescription& light) {
@@ -73,7 +82,7 @@ std::unique_ptr<Light> BuildDistant(const Values& values, const LightDescription
   const Vec3d travel = light.worldFromLight.Vector(to - from);
   CheckDirection(light, travel);
   const Color L = GetEmission(values, light, "L") * TargetFactor(values.Context(), light, "illuminance", 1);
-  return std::make_unique<DistantLight>(ToFloat(Normalize(travel)), L);
+  return std::make_unique<DistantLight>(ToFloat(Normalize(travel)), InRange(light, L));
 }
 
 /// The illuminance, with luminance weights, of the map's hemisphere z > 0 on the plane z = 0, as pbrt-v4 reckons it:
@@ -140,7 +149,7 @@ EnvironmentOptions GetEnvironmentOptions(const BuildContext& context, const Ligh
     FailUnknownName(light.params.LocationOf("emission", light.location), "emission", emission,
                     {"importance", "uniform"});
   }
-  const std::string sampling = light.params.GetString("sampling", "importance");
+  const std::string sampling = light.params.GetString("sampling", kDefaultEnvironmentSampling);
   static const std::pair<const char*, EnvironmentSampling> kSamplings[] = {
       {"uniform", EnvironmentSampling::Uniform},         {"cosine", EnvironmentSampling::Cosine},
       {"importance", EnvironmentSampling::Importance},   {"irradiance", EnvironmentSampling::Irradiance},
@@ -166,7 +175,7 @@ std::unique_ptr<Light> BuildEnvironmentMap(Values& values, const LightDescriptio
   const Image map = ReadEmission(values, &fileName, scale, true);
   if (!isV3 && light.params.Has("illuminance"))
     scale *= TargetFactor(context, light, "illuminance", PbrtUpperIlluminance(map));
-  return std::make_unique<EnvironmentLight>(map, context.renderFromWorld * light.worldFromLight, scale,
+  return std::make_unique<EnvironmentLight>(map, context.renderFromWorld * light.worldFromLight, InRange(light, scale),
                                             MappingOf(context), options);
 }
 
@@ -181,7 +190,7 @@ std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& lig
       throw Error(fileName->location, "both \"L\" and \"filename\" are given, expected one of them");
     return BuildEnvironmentMap(values, light, *fileName, options);
   }
-  const Color L = GetEmission(values, light, "L") * TargetFactor(context, light, "illuminance", kPiD);
+  const Color L = InRange(light, GetEmission(values, light, "L") * TargetFactor(context, light, "illuminance", kPiD));
   // The same from everywhere: both ways to emit are one.
   if (!light.params.Has("sampling")) {
     auto uniform = std::make_unique<UniformEnvironmentLight>(L);
@@ -197,7 +206,7 @@ std::unique_ptr<Light> BuildToPower(const BuildContext& context, const LightDesc
                                     Make make) {
   double reached = 0;
   if (!context.IsV3() && light.params.Has("power")) reached = static_cast<double>(make(Color(1))->Power().Luminance());
-  return make(factor * TargetFactor(context, light, "power", reached));
+  return make(InRange(light, factor * TargetFactor(context, light, "power", reached)));
 }
 
 /// In pbrt-v4 the image of a goniometric light has no colours.
@@ -248,7 +257,7 @@ std::unique_ptr<Light> BuildKnownLight(Values& values, const LightDescription& l
   if (light.type == "point") return BuildPoint(values, light);
   if (light.type == "spot") return BuildSpot(values, light);
   if (light.type == "distant") return BuildDistant(values, light);
-  if (light.type == "infinite" || light.type == "exinfinite") return BuildInfinite(values, light);
+  if (IsInfinite(light)) return BuildInfinite(values, light);
   if (light.type == "projection") return BuildProjection(values, light);
   if (light.type == "goniometric") return BuildGoniometric(values, light);
   FailUnknownName(light.location, "light", light.type,
@@ -305,11 +314,12 @@ std::unique_ptr<Light> BuildAreaLight(Values& values, const Entity& light, const
   if (fileName && !GetScale(values, light).IsBlack()) {
     double luminance = 0;
     BuildEmissionImage(values, *fileName, Color(1), &luminance);
-    const Color scale = GetScale(values, light) * TargetFactor(context, light, "power", luminance * reachedEach);
+    const Color scale =
+        InRange(light, GetScale(values, light) * TargetFactor(context, light, "power", luminance * reachedEach));
     radiance = BuildEmissionImage(values, *fileName, scale, &luminance);
   } else {
     const Color L = GetEmission(values, light, "L") * TargetFactor(context, light, "power", reachedEach);
-    radiance = std::make_shared<ConstantTexture<Color>>(L);
+    radiance = std::make_shared<ConstantTexture<Color>>(InRange(light, L));
   }
   light.params.ReportUnused(context.diagnostics, {"nsamples", "samples"});
   return std::make_unique<AreaLight>(&shape, std::move(radiance), twoSided, std::move(alpha));

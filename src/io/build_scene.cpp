@@ -24,7 +24,7 @@ class Assembler {
 
   void AddLights() {
     for (const LightDescription& light : context_.description.lights)
-      parts_->lights.push_back(AtLocation(light.location, [&] { return BuildLight(values_, light); }));
+      AddLight(light, [&] { return BuildLight(values_, light); });
   }
 
   void AddShapes() {
@@ -49,6 +49,11 @@ class Assembler {
     Transform objectFromGroup;
   };
 
+  template <typename Build>
+  void AddLight(const Entity& light, Build build) {
+    parts_->lights.push_back(AtLocation(light.location, build));
+    parts_->lightLocations.push_back(light.location);
+  }
   void AddShape(const ShapeDescription& shape, const Transform& targetFromWorld, const Entity* areaLight);
   const Entity* UsableAreaLight(const ShapeDescription& shape) const;
   FloatTexturePtr FindAlpha(const ShapeDescription& shape, bool isLight);
@@ -106,8 +111,7 @@ void Assembler::AddShape(const ShapeDescription& shape, const Transform& targetF
     primitive.alpha = filter;
     if (areaLight) {
       primitive.light = static_cast<int>(parts_->lights.size());
-      parts_->lights.push_back(AtLocation(
-          areaLight->location, [&] { return BuildAreaLight(values_, *areaLight, *primitive.shape, alpha); }));
+      AddLight(*areaLight, [&] { return BuildAreaLight(values_, *areaLight, *primitive.shape, alpha); });
     }
     parts_->primitives.push_back(std::move(primitive));
   }

@@ -1,5 +1,7 @@
 #include "src/io/scene_description.h"
 
+#include <algorithm>
+
 namespace dapple {
 
 namespace {
@@ -35,10 +37,15 @@ void Set(LightDescription* light, Parameter parameter) {
 
 }  // namespace
 
+bool HasImage(const LightDescription& light) {
+  const auto namesImage = [](const Parameter& p) { return p.name == "mapname" || p.name == "filename"; };
+  return std::ranges::any_of(light.params.All(), namesImage);
+}
+
 int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter) {
   int count = 0;
   for (LightDescription& light : description->lights) {
-    if (light.type != "infinite") continue;
+    if (!IsInfinite(light)) continue;
     Set(&light, parameter);
     ++count;
   }
@@ -47,8 +54,7 @@ int SetOnInfiniteLights(SceneDescription* description, const Parameter& paramete
 
 void SetDefaultOnEnvironmentMaps(SceneDescription* description, const Parameter& parameter) {
   for (LightDescription& light : description->lights) {
-    const bool hasImage = light.params.Has("mapname") || light.params.Has("filename");
-    if (light.type == "infinite" && hasImage && !light.params.Has(parameter.name)) Set(&light, parameter);
+    if (IsInfinite(light) && HasImage(light) && !light.params.Has(parameter.name)) Set(&light, parameter);
   }
 }
 

@@ -95,6 +95,15 @@ inline std::string IntegratorNameOf(const SceneDescription& description) {
   return description.integrator.type == "volpath" ? "path" : description.integrator.type;
 }
 
+/// What "sampling" is for an infinite light with an image where the file does not say.
+inline constexpr const char* kDefaultEnvironmentSampling = "importance";
+
+/// True for lights from everywhere.
+inline bool IsInfinite(const LightDescription& light) { return light.type == "infinite" || light.type == "exinfinite"; }
+
+/// True for lights that shine by an image.
+bool HasImage(const LightDescription& light);
+
 /// Sets a parameter of every infinite light, at the light's place; returns how many there are.
 int SetOnInfiniteLights(SceneDescription* description, const Parameter& parameter);
 

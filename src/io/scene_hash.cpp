@@ -1,6 +1,8 @@
 #include "src/io/scene_hash.h"
 
+#include <algorithm>
 #include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,8 @@ namespace dapple {
 
 namespace {
 
+constexpr std::string_view kSampling = "sampling";
+
 class SceneHasher {
  public:
   explicit SceneHasher(const SceneDescription& scene) : scene_(scene) {}
@@ -18,10 +22,7 @@ class SceneHasher {
     hash_.AddText(entity.type);
     Add(entity.params);
   }
-  void Add(const ParameterList& params) {
-    hash_.Add(params.All().size());
-    for (const Parameter& parameter : params.All()) Add(parameter);
-  }
+  void Add(const ParameterList& params) { Add(params, ""); }
   void Add(const Transform& transform) {
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column) hash_.Add(transform.At(row, column));
@@ -43,7 +44,8 @@ class SceneHasher {
     hash_.AddText(material.name);
   }
   void Add(const LightDescription& light) {
-    Add(static_cast<const Entity&>(light));
+    hash_.AddText(light.type);
+    Add(light.params, IsInfinite(light) ? kSampling : "");
     Add(light.worldFromLight);
   }
   void Add(const ObjectDefinition& object) { AddAll(object.shapes); }
@@ -60,14 +62,20 @@ class SceneHasher {
   /// The picture's name is left out: a file of that name is what the render itself writes.
   void AddFilm(const Entity& film) {
     hash_.AddText(film.type);
-    for (const Parameter& parameter : film.params.All())
-      if (parameter.name != "filename") Add(parameter);
+    Add(film.params, "filename");
   }
   void AddNumber(int number) { hash_.Add(number); }
 
   std::string Hex() const { return hash_.Hex(); }
 
  private:
+  /// All but the one of the name `leftOut`.
+  void Add(const ParameterList& params, std::string_view leftOut) {
+    const auto counts = [&](const Parameter& parameter) { return parameter.name != leftOut; };
+    hash_.Add(std::ranges::count_if(params.All(), counts));
+    for (const Parameter& parameter : params.All())
+      if (counts(parameter)) Add(parameter);
+  }
   void Add(const Parameter& parameter);
   void AddFileOf(const std::string& name, const FileLocation& namedAt);
 
@@ -126,6 +134,19 @@ std::string HashSceneContent(const SceneDescription& scene) {
   hasher.AddAll(scene.instances);
   hasher.AddNumber(scene.version);
   return hasher.Hex();
+}
+
+std::string DescribeEnvironmentSampling(const SceneDescription& scene) {
+  std::string text;
+  for (const LightDescription& light : scene.lights) {
+    if (!IsInfinite(light)) continue;
+    const std::vector<Parameter>& all = light.params.All();
+    const auto given = std::ranges::find(all, kSampling, &Parameter::name);
+    const bool isNamed = given != all.end() && !given->strings.empty();
+    text += text.empty() ? "" : ",";
+    text += isNamed ? given->strings[0] : HasImage(light) ? kDefaultEnvironmentSampling : "uniform light";
+  }
+  return text.empty() ? "none" : text;
 }
 
 }  // namespace dapple

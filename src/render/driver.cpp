@@ -137,7 +137,7 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
     WithinMemory(fmt::format("pass {}", pass), [&] {
       if (!film.ExtraChannels().empty()) result.stats += RecordFirstHits(scene, seed, pass, film);
       const PassStats stats = integrator.RenderPass(pass, film);
-      film.CountNonFinite(stats.nonFinite.Total());
+      for (const auto& [source, count] : stats.nonFinite.BySource()) film.CountNonFinite(NameOf(source, scene), count);
       result.stats += stats;
     });
     assert(film.PassCount() == passesBefore + 1);

@@ -57,9 +57,11 @@ void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracks
   const int64_t pixels = settings.crop.Area(), bytes = FilmBytes(settings, aovs, tracksBlur);
   const std::string size = fmt::format("a picture of {} x {} pixels", settings.crop.Width(), settings.crop.Height());
   if (pixels > kMaxImagePixels)
-    throw Error(fmt::format("{}, expected at most {} in all: see --resolution and --crop", size, kMaxImagePixels));
+    throw Error(settings.resolutionLocation,
+                fmt::format("{}, expected at most {} in all: see --resolution and --crop", size, kMaxImagePixels));
   if (bytes > available)
-    throw Error(fmt::format("{}, whose film takes {}, more than the {} of this machine: see --resolution and --crop",
+    throw Error(settings.resolutionLocation,
+                fmt::format("{}, whose film takes {}, more than the {} of this machine: see --resolution and --crop",
                             size, Megabytes(bytes), Megabytes(available)));
 }
 

@@ -22,8 +22,8 @@ struct MemoryNeeds {
   int64_t Sum() const { return film + files + photons + pilots; }
 };
 
-/// Throws `Error` where the picture has more pixels than a file may have, or its film alone takes more than the
-/// `available` bytes. `tracksBlur`: the film does, for the error.
+/// Throws `Error`, at the resolution where the file has it, where the picture has more pixels than a file may have, or
+/// its film alone takes more than the `available` bytes. `tracksBlur`: the film does, for the error.
 void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracksBlur, int64_t available);
 
 /// What a light path leaves of photons is counted on a few thousand paths. `tracksBlur` as above.

@@ -26,12 +26,12 @@ std::string RenderIdentity::ValueOf(const std::string& name) const {
   return "";
 }
 
-RenderIdentity MakeIdentity(const std::string& sceneHash, const Film& film, const AovSet& aovs,
+RenderIdentity MakeIdentity(const SceneIdentity& scene, const Film& film, const AovSet& aovs,
                             const std::string& integrator, const IntegratorOptions& options, int seed) {
   const Vec2i& resolution = film.FullResolution();
   const PixelBounds& crop = film.Crop();
   RenderIdentity identity{{
-      {"scene", sceneHash},
+      {"scene", scene.hash},
       {"resolution", fmt::format("{}x{}", resolution.x, resolution.y)},
       {"crop", fmt::format("{},{},{},{}", crop.min.x, crop.max.x, crop.min.y, crop.max.y)},
       {"clamp", film.Clamp() ? fmt::format("{}", *film.Clamp()) : "none"},
@@ -39,6 +39,7 @@ RenderIdentity MakeIdentity(const std::string& sceneHash, const Film& film, cons
       {"estimate of bias", film.TracksBlur() ? "on" : "off"},
       {"integrator", integrator},
       {"seed", fmt::format("{}", seed)},
+      {"environment sampling", scene.environmentSampling},
   }};
   for (auto& option : DescribeOptions(options)) identity.fields.push_back(std::move(option));
   identity.fields.insert(identity.fields.end(), {{"version", Version()},

@@ -19,9 +19,14 @@ struct RenderIdentity {
   std::string ValueOf(const std::string& name) const;
 };
 
-/// The identity of a render by this program on this processor. `sceneHash` as `HashSceneContent` gives it; of the film
-/// counts what it is, not what it holds.
-RenderIdentity MakeIdentity(const std::string& sceneHash, const Film& film, const AovSet& aovs,
+/// Of which scene a render is.
+struct SceneIdentity {
+  std::string hash;                 ///< `HashSceneContent`
+  std::string environmentSampling;  ///< how directions toward infinite lights are drawn
+};
+
+/// The identity of a render by this program on this processor. Of the film counts what it is, not what it holds.
+RenderIdentity MakeIdentity(const SceneIdentity& scene, const Film& film, const AovSet& aovs,
                             const std::string& integrator, const IntegratorOptions& options, int seed);
 
 /// What of `other` is not as in `expected`, for people: "seed 8, not 7; the scene's content"; empty where the passes of

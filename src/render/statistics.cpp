@@ -5,6 +5,13 @@
 
 namespace dapple {
 
+namespace {
+
+/// What gave values that were found bad by the film alone.
+const std::string kBeyondFilm = "values that the film refused";
+
+}  // namespace
+
 TableUse AllTables(const RenderNeeds& needs) {
   const SceneResources& scene = needs.scene;
   return scene.environmentTables + scene.lightTables + scene.choiceTables + needs.preparation.tables;
@@ -47,8 +54,8 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
       {"nonFiniteSources", nlohmann::ordered_json::object()},
       {"error", nullptr},
   };
-  for (const auto& [source, count] : stats.nonFinite.BySource())
-    json["nonFiniteSources"][NameOf(source, renderedScene)] = count;
+  for (const auto& [source, count] : film.NonFiniteBySource()) json["nonFiniteSources"][source] = count;
+  if (film.RefusedCount() > 0) json["nonFiniteSources"][kBeyondFilm] = film.RefusedCount();
   if (const auto error = EstimateError(film, renderedScene.Settings().exposure)) {
     json["error"] = {{"total", error->Total()}, {"noise", error->noise}, {"bias", nullptr}};
     if (film.TracksBlur()) json["error"]["bias"] = error->bias;
@@ -56,10 +63,13 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
   return json.dump(2) + "\n";
 }
 
-std::string DescribeNonFinite(const NonFiniteCounts& counts, const Scene& scene) {
+std::string DescribeNonFinite(const Film& film) {
   std::string text;
-  for (const auto& [source, count] : counts.BySource())
-    text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", count, NameOf(source, scene));
+  const auto add = [&](const std::string& source, int64_t count) {
+    text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", count, source);
+  };
+  for (const auto& [source, count] : film.NonFiniteBySource()) add(source, count);
+  if (film.RefusedCount() > 0) add(kBeyondFilm, film.RefusedCount());
   return text;
 }
 

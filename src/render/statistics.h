@@ -18,14 +18,15 @@ struct RenderNeeds {
 /// kind, "photons" (emitted, stored; begun in pilots), "photonMaps" (built, bytes of the largest), "gathers" (count,
 /// photons within reach), "splats", "tables" (how many of the environment, of other lights, of the choice among lights,
 /// of what pilots learned; bytes of all), "textures" (image files opened, bytes that are kept), "geometry" (bytes),
-/// "nonFinite" (contributions left out), "nonFiniteSources" (how many of these, of the passes of this run, each light,
-/// material or the integrator gave) and "error" (estimated, as error_estimate.h says: total, noise and bias, which is
-/// null where the film does not track it; null before two passes). Ends with a line end.
+/// "nonFinite" (contributions left out), "nonFiniteSources" (how many of these each light, material or the integrator
+/// gave), both of all passes in the film, and "error" (estimated, as error_estimate.h says: total, noise and bias,
+/// which is null where the film does not track it; null before two passes). Ends with a line end.
 std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const RenderNeeds& needs,
                              const Film& film, const Scene& scene);
 
-/// "7 of light 0 (point), 2 of material \"wall\" (scene.pbrt:3:1)": what gave values that are not finite.
-std::string DescribeNonFinite(const NonFiniteCounts& counts, const Scene& scene);
+/// "7 of light 0 (point), 2 of material \"wall\" (scene.pbrt:3:1)": what gave the film's values that are not finite;
+/// empty where there are none.
+std::string DescribeNonFinite(const Film& film);
 
 /// All tables that a render built.
 TableUse AllTables(const RenderNeeds& needs);

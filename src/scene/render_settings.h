@@ -15,7 +15,8 @@ namespace dapple {
 struct RenderSettings {
   // Film.
   Vec2i resolution{1280, 720};
-  PixelBounds crop;  ///< in pixels
+  FileLocation resolutionLocation;  ///< where the file says so; no file: it does not
+  PixelBounds crop;                 ///< in pixels
   Filter filter = Filter::Box();
   /// Factor of the image's values before it is written (pbrt-v3's film scale; v4's exposuretime * iso / 100).
   float exposure = 1;

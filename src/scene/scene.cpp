@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include <fmt/format.h>
+
 #include "src/geometry/outline.h"
 
 namespace dapple {
@@ -57,6 +59,14 @@ void AddLights(const std::vector<std::unique_ptr<Light>>& lights, const Vec3& ce
   }
 }
 
+/// Of a light whose flux is not a number nobody can say how much of it is to be drawn.
+void CheckPower(const Light& light, const FileLocation& location) {
+  const Color power = light.Power();
+  if (power.IsFinite()) return;
+  throw Error(location, fmt::format("light \"{}\" has the power ({}, {}, {}), expected finite numbers", light.Name(),
+                                    power.r, power.g, power.b));
+}
+
 }  // namespace
 
 Scene::Scene(SceneParts parts)
@@ -75,7 +85,7 @@ Scene::Scene(SceneParts parts)
       std::any_of(lights_.begin(), lights_.end(), [](const auto& light) { return light->ComesFromOutside(); });
   std::optional<Outline> outline;
   if (needsOutline) outline.emplace(entries, parts.groups, parts.instances);
-  PrepareLights({extent_.center, extent_.radius, outline ? &*outline : nullptr});
+  PrepareLights({extent_.center, extent_.radius, outline ? &*outline : nullptr}, parts.lightLocations);
   resources_.images = parts.images;
   resources_.geometryBytes = accelerator_->MemoryBytes();
   for (const ScenePrimitive& primitive : primitives_) resources_.geometryBytes += primitive.shape->MemoryBytes();
@@ -97,11 +107,12 @@ std::vector<GeometryEntry> Scene::GeometryEntries() const {
   return entries;
 }
 
-void Scene::PrepareLights(const SceneExtent& extent) {
+void Scene::PrepareLights(const SceneExtent& extent, const std::vector<FileLocation>& locations) {
   std::vector<std::unique_ptr<Light>> emitting;
   std::vector<int> newIndex(lights_.size(), -1);
   for (size_t i = 0; i < lights_.size(); ++i) {
     lights_[i]->Prepare(extent);
+    CheckPower(*lights_[i], i < locations.size() ? locations[i] : FileLocation());
     (lights_[i]->IsInfinite() ? resources_.environmentTables : resources_.lightTables) += lights_[i]->Tables();
     if (!(lights_[i]->Power().MaxComponent() > 0)) {
       ++facts_.blackLights;

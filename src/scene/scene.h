@@ -35,6 +35,7 @@ struct SceneParts {
   std::vector<std::unique_ptr<Material>> materials;
   std::vector<std::string> materialNames;  ///< for messages: one a material, or none at all
   std::vector<std::unique_ptr<Light>> lights;
+  std::vector<FileLocation> lightLocations;  ///< for messages: one a light, or none at all
   std::unique_ptr<Camera> camera;
   RenderSettings settings;
   Transform renderToWorld;
@@ -45,7 +46,8 @@ struct SceneParts {
 class Scene {
  public:
   /// Prepares the lights, drops those that emit nothing (so indices into `Lights()` may differ from the parts'), and
-  /// builds the accelerator. Throws `Error` where the geometry cannot be traced.
+  /// builds the accelerator. Throws `Error` where the geometry cannot be traced, or the power of a light is infinite or
+  /// not a number.
   explicit Scene(SceneParts parts);
   ~Scene();
 
@@ -86,7 +88,7 @@ class Scene {
 
  private:
   std::vector<GeometryEntry> GeometryEntries() const;
-  void PrepareLights(const SceneExtent& extent);
+  void PrepareLights(const SceneExtent& extent, const std::vector<FileLocation>& locations);
 
   std::vector<ScenePrimitive> primitives_;
   std::vector<std::unique_ptr<Material>> materials_;

@@ -132,7 +132,27 @@ TEST_F(BadInput, ResolutionsOfNothingAndOfTooMuch) {
     EXPECT_TRUE(BeginsWith(error("4", size), "bad.pbrt:1:")) << size;
   }
   EXPECT_TRUE(BeginsWith(error("65536", "65536"),
-                         "error: a picture of 65536 x 65536 pixels, expected at most 268435456 in all"));
+                         "bad.pbrt:1:12: error: a picture of 65536 x 65536 pixels, expected at most 268435456 in all"));
+  EXPECT_TRUE(BeginsWith(error("30000", "60000"),
+                         "bad.pbrt:1:40: error: a picture of 30000 x 60000 pixels, expected at most 268435456 in all"))
+      << "the larger side";
+}
+
+// A light of which nobody can say how much it sends is not taken for a black one.
+TEST_F(BadInput, LightsBeyondAllNumbers) {
+  const std::string dark =
+      "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\nShape \"sphere\"\n";
+  for (const std::string light :
+       {"LightSource \"point\" \"rgb I\" [1e300 0 0]", "LightSource \"point\" \"rgb I\" [0 1 0] \"float scale\" 1e300",
+        "LightSource \"point\" \"float power\" 1e300", "LightSource \"spot\" \"rgb I\" [1e30 0 0] \"float scale\" 1e30",
+        "LightSource \"distant\" \"rgb L\" [1e300 1e300 1e300]", "LightSource \"infinite\" \"rgb L\" [1e300 0 1]",
+        "LightSource \"infinite\" \"rgb L\" [1e300 0 1] \"string sampling\" \"cosine\"",
+        "AreaLightSource \"diffuse\" \"rgb L\" [0 0 1e300] Shape \"disk\"",
+        "AreaLightSource \"diffuse\" \"float power\" 1e300 Shape \"disk\""}) {
+    const std::string error = ErrorOf(dark + light);
+    EXPECT_TRUE(BeginsWith(error, "bad.pbrt:4:1: error: light \"")) << light;
+    EXPECT_TRUE(Contains(error, "expected finite numbers")) << light;
+  }
 }
 
 TEST_F(BadInput, AGzipFileThatFillsTheMemory) {
@@ -153,7 +173,8 @@ TEST_F(BadInput, WhatIsNoFileIsNotRead) {
   }
 }
 
-// A mesh of a quarter million triangles, with memory that runs out in the reader, when Embree starts and while it builds.
+// A mesh of a quarter million triangles, with memory that runs out in the reader, when Embree starts and while it
+// builds.
 TEST_F(BadInput, ASceneThatTheMemoryDoesNotHold) {
   if (kIsSanitized) GTEST_SKIP() << "the sanitizers' own memory cannot be bounded";
   Write("a.pbrt",

@@ -1,8 +1,11 @@
 // A render that was ended and went on is the render that was not: the same file, to the last bit.
 #include <algorithm>
+#include <cstdio>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <signal.h>
 
 #include "integrators/integrator.h"
@@ -112,6 +115,75 @@ TEST_F(Resume, RefusesTheCheckpointOfAnotherRenderAndSaysWhatDiffers) {
                          "a.exr.checkpoint: error: the file is damaged"));
 }
 
+// What Dapple chose may be named outright, and the reverse, where that is the same render; where the choice changes how
+// an environment is sampled, that is what is told.
+TEST_F(Resume, WhatWasChosenMayBeNamedWhereTheBitsAreTheSame) {
+  WriteScene("tiny.pbrt");
+  WriteExr(Path("sky.exr"), Image(2, 2, {"Y"}, {1, 2, 3, 4}));
+  const std::string begin =
+      "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\"\n"
+      "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\nShape \"sphere\"\n";
+  const std::string sky = "LightSource \"infinite\" \"string filename\" \"sky.exr\"";
+  Write("point.pbrt", begin + "LightSource \"point\" \"point3 from\" [0 2 -2]\n");
+  Write("sky.pbrt", begin + sky + "\n");
+  Write("told.pbrt", begin + sky + " \"string sampling\" \"irradiance\"\n");
+  for (const std::string scene : {"point.pbrt", "told.pbrt", "sky.pbrt"})
+    for (const auto& [first, second] : {std::pair("auto", "path"), std::pair("path", "auto")}) {
+      const std::string command = scene + " --quiet -o a.exr --checkpoint 60 --integrator ";
+      ASSERT_EQ(Run(command + second + " --passes 3").exitCode, 0);
+      const std::string whole = Read("a.exr");
+      ASSERT_EQ(Run(command + first + " --passes 1").exitCode, 0);
+      const ProgramResult resumed = Run(command + second + " --passes 3 --resume");
+      if (scene == "sky.pbrt") {
+        EXPECT_EQ(resumed.exitCode, 1);
+        const bool wasChosen = std::string(first) == "auto";
+        EXPECT_EQ(resumed.err,
+                  "a.exr.checkpoint: error: it is of another render: environment sampling " +
+                      std::string(wasChosen ? "irradiance, not importance" : "importance, not irradiance") +
+                      "; remove it, or render without --resume\n");
+      } else {
+        EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+        EXPECT_TRUE(Read("a.exr") == whole) << scene << ": " << first << ", then " << second;
+      }
+    }
+}
+
+// Lights so bright that what they give overflows in the integrator, or is more than the film holds.
+TEST_F(Resume, WhatWasLeftOutIsCountedOverAllParts) {
+  Write("hot.pbrt",
+        "LookAt 0 1 -4  0 0 0  0 1 0\nCamera \"perspective\"\n"
+        "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n"
+        "LightSource \"distant\" \"rgb L\" [3e38 3e38 3e38] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [-3 0 -3  3 0 -3  -3 0 3  3 0 3]\n"
+        "AreaLightSource \"diffuse\" \"rgb L\" [3e38 3e38 3e38]\nTranslate 0 2 0\nRotate 90 1 0 0\n"
+        "Shape \"disk\" \"float radius\" 5\n");
+  const std::string command = "hot.pbrt --quiet --integrator path ";
+  const ProgramResult whole = Run(command + "--passes 8 -o whole.exr --stats whole.json");
+  ASSERT_EQ(whole.exitCode, 0) << whole.err;
+  int total = 0, ofIntegrator = 0, ofFilm = 0;
+  ASSERT_EQ(std::sscanf(whole.err.c_str(),
+                        "warning: %d contributions were left out: infinite, not a number, or too large: "
+                        "%d of the integrator, %d of values that the film refused",
+                        &total, &ofIntegrator, &ofFilm),
+            3)
+      << whole.err;
+  EXPECT_GT(ofIntegrator, 0);
+  EXPECT_GT(ofFilm, 0);
+  EXPECT_EQ(ofIntegrator + ofFilm, total);
+
+  const auto counts = [&](const std::string& file) {
+    const auto json = nlohmann::json::parse(Read(file));
+    return std::pair(json["nonFinite"], json["nonFiniteSources"]);
+  };
+  ASSERT_EQ(Run(command + "--passes 3 -o a.exr --checkpoint 60").exitCode, 0);
+  EXPECT_EQ(Run(command + "--passes 8 -o a.exr --resume --stats a.json").err, whole.err);
+  EXPECT_EQ(counts("a.json"), counts("whole.json"));
+  EXPECT_EQ(counts("a.json").first, total);
+
+  for (const std::string range : {"0:3", "3:8"}) ASSERT_EQ(Run(command + "--passes " + range).exitCode, 0);
+  EXPECT_EQ(Run("merge hot.0-3.dapple hot.3-8.dapple -o merged.exr").err, whole.err);
+}
+
 TEST_F(Resume, TheFileRecordsTheTimeOfAllParts) {
   WriteScene("tiny.pbrt");
   const auto seconds = [&] { return std::get<double>(ReadExrMetadata(Path("a.exr")).at("seconds")); };
@@ -125,8 +197,9 @@ TEST_F(Resume, AClampIsRecordedAndTakesLightAway) {
   WriteScene("tiny.pbrt");
   const std::string command = "tiny.pbrt --quiet --integrator path --passes 4 -o a.exr";
   const auto sum = [&] {
+    const Image image = ReadImage(Path("a.exr"));  // that outlives the loop
     double total = 0;
-    for (const float value : ReadImage(Path("a.exr")).Values()) total += static_cast<double>(value);
+    for (const float value : image.Values()) total += static_cast<double>(value);
     return total;
   };
   ASSERT_EQ(Run(command).exitCode, 0);

@@ -135,6 +135,27 @@ TEST(Film, BadValuesAreCountedAndNeverAdded) {
   EXPECT_FALSE(film == empty);
 }
 
+TEST(Film, WhatGaveBadValuesIsKeptAndAddedUp) {
+  Film whole = SmallFilm(), first = SmallFilm(), second = SmallFilm();
+  for (Film* film : {&whole, &first}) {
+    film->CountNonFinite("light 0 (point)", 3);
+    film->AddSample({3, 4}, Color(INFINITY), 0);
+    film->FinishPass(0);
+  }
+  for (Film* film : {&whole, &second}) {
+    film->CountNonFinite("material \"a b\" (a.pbrt:3:1)", 2);
+    film->CountNonFinite("light 0 (point)", 4);
+    film->FinishPass(1);
+  }
+  first.Merge(Film::Deserialize(second.Serialize()));
+  EXPECT_EQ(first, whole);
+  EXPECT_EQ(Film::Deserialize(whole.Serialize()), whole);
+  EXPECT_EQ(first.NonFiniteBySource(),
+            (std::map<std::string, int64_t>{{"light 0 (point)", 7}, {"material \"a b\" (a.pbrt:3:1)", 2}}));
+  EXPECT_EQ(first.RefusedCount(), 1);
+  EXPECT_EQ(first.NonFiniteCount(), 10);
+}
+
 TEST(Film, SplatsFarAwayTouchNothing) {
   Film film = SmallFilm(Filter::Gaussian());
   for (const float x : {-1e30f, -100.f, 1e9f, std::numeric_limits<float>::max()}) film.AddSplat({x, 5}, Color(1), 0);

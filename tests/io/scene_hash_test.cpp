@@ -55,6 +55,22 @@ TEST(SceneHash, DoesNotCareForWhatThePictureDoesNotFollowFrom) {
   EXPECT_EQ(HashOf(Changed("[40]", "[4e1]")), hash);
 }
 
+// How directions toward it are drawn is no part of the content, and is told by itself.
+TEST(SceneHash, SamplingOfEnvironmentsIsToldApart) {
+  const auto parse = [](const std::string& lights) {
+    Diagnostics diagnostics([](const std::string& line) { ADD_FAILURE() << line; });
+    return ParsePbrtString("WorldBegin\n" + lights + "\nWorldEnd\n", "test.pbrt", testing::TempDir(),
+                           {.pbrtVersion = 3}, diagnostics);
+  };
+  const std::string sky = "LightSource \"infinite\" \"string mapname\" \"sky.exr\" ";
+  const std::string cosine = "\"string sampling\" \"cosine\"\n";
+  const std::string gray = "LightSource \"exinfinite\"\n";
+  EXPECT_EQ(HashSceneContent(parse(sky + cosine)), HashSceneContent(parse(sky)));
+  EXPECT_NE(HashSceneContent(parse(sky + "\"integer samples\" 4\n")), HashSceneContent(parse(sky)));
+  EXPECT_EQ(DescribeEnvironmentSampling(parse(sky + cosine + gray + sky)), "cosine,uniform light,importance");
+  EXPECT_EQ(DescribeEnvironmentSampling(parse("LightSource \"point\"")), "none");
+}
+
 TEST(SceneHash, HoldsTheContentOfFiles) {
   const std::string text =
       Changed("Material", "Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"hashed.png\"\nMaterial");

@@ -22,7 +22,7 @@ Film SmallFilm(int passes) {
 
 RenderOrigin Origin(int seed = 7) {
   RenderOrigin origin;
-  origin.identity = MakeIdentity("abc", SmallFilm(0), {.depth = true}, "path", {}, seed);
+  origin.identity = MakeIdentity({"abc", "none"}, SmallFilm(0), {.depth = true}, "path", {}, seed);
   origin.record.scene = "a \"scene\"\n\xff.pbrt";
   origin.record.integrator = "path";
   origin.record.seed = seed;

@@ -123,7 +123,7 @@ void ExpectOnly(const Scene& scene, const Rendered& rendered, const NonFiniteSou
   const auto json = nlohmann::json::parse(StatisticsToJson({}, rendered.result, {}, rendered.film, scene));
   EXPECT_EQ(json["nonFinite"], counts.Total());
   EXPECT_EQ(json["nonFiniteSources"], (nlohmann::json{{name, counts.Total()}}));
-  EXPECT_EQ(DescribeNonFinite(counts, scene), std::to_string(counts.Total()) + " of " + name);
+  EXPECT_EQ(DescribeNonFinite(rendered.film), std::to_string(counts.Total()) + " of " + name);
 }
 
 class NonFinite : public testing::TestWithParam<std::string_view> {

@@ -8,7 +8,7 @@ namespace dapple {
 namespace {
 
 RenderIdentity SomeIdentity() {
-  return MakeIdentity("abc", Film({4, 3}, {{0, 0}, {4, 3}}, Filter::Box()), {}, "path", {}, 7);
+  return MakeIdentity({"abc", "none"}, Film({4, 3}, {{0, 0}, {4, 3}}, Filter::Box()), {}, "path", {}, 7);
 }
 
 RenderIdentity With(const std::string& name, const std::string& value) {
