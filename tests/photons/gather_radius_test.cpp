@@ -81,5 +81,43 @@ TEST_F(GatherRadii, AreWidestWhereNoPhotonEverLands) {
   EXPECT_GT(outside.radius, 1);
 }
 
+// A mirror throws the light of two spots on a floor of next to no albedo: a dim one everywhere, and a bright one on a
+// disk around the origin. In the dim light 24 photons lie within a radius of 0.088; nearer than that to the disk the
+// radius would reach into it, and gather what belongs there.
+TEST(GatherRadiiBesideACaustic, DoNotReachIt) {
+  const std::string spot =
+      "LightSource \"spot\" \"point from\" [0 0 0.001] \"point to\" [0 0 1] \"float conedeltaangle\" [0] ";
+  const auto scene = testing_support::SceneFromText(
+      "LookAt 0 0 0.95  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" [56] "
+      "Film \"image\" \"integer xresolution\" [40] \"integer yresolution\" [40] WorldBegin " +
+      spot + "\"float coneangle\" [10] \"rgb I\" [1 1 1] " + spot +
+      "\"float coneangle\" [40] \"rgb I\" [.02 .02 .02] "
+      "Material \"mirror\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
+      "\"point P\" [-2 -2 1 2 -2 1 2 2 1 -2 2 1] "
+      "Material \"matte\" \"rgb Kd\" [.02 .02 .02] Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
+      "\"point P\" [-2 -2 0 2 -2 0 2 2 0 -2 2 0] WorldEnd");
+  const GatherRadius radius(*scene, EmissionSampler(*scene), 1 << 15, {});
+  const auto toRender = scene->RenderToWorld().Inverse();
+  const double rim = 2 * std::tan(Radians(10.0));
+  /// So far from the disk, all around it.
+  const auto meanAt = [&](double distance) {
+    constexpr int kPoints = 720;
+    Means mean;
+    for (int i = 0; i < kPoints; ++i) {
+      const double phi = 2 * kPiD * i / kPoints, r = rim + distance;
+      const GatherForecast forecast =
+          radius.At(toRender.Point(ToFloat(Vec3d(r * std::cos(phi), r * std::sin(phi), 0))));
+      mean.radius += static_cast<double>(forecast.radius) / kPoints;
+      mean.photons += static_cast<double>(forecast.photons) / kPoints;
+    }
+    return mean;
+  };
+  const Means away = meanAt(0.2);
+  EXPECT_NEAR(away.radius, 0.088, 0.004);
+  EXPECT_NEAR(away.photons, GatherRadius::kPhotons, 0.1 * GatherRadius::kPhotons);
+  // Nearer, radii are means over cubes 0.05 wide, of which those at the rim count in the disk's.
+  for (const double distance : {0.05, 0.06, 0.07, 0.08}) EXPECT_LT(meanAt(distance).radius, 0.9 * distance) << distance;
+}
+
 }  // namespace
 }  // namespace dapple
