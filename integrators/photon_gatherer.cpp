@@ -1,7 +1,9 @@
 #include "integrators/photon_gatherer.h"
 
 #include "integrators/density_sum.h"
+#include "integrators/guided_bsdf.h"
 #include "src/photons/radius_schedule.h"
+#include "src/sampling/mis.h"
 
 namespace dapple {
 
@@ -21,6 +23,8 @@ void PhotonGatherer::Prepare(const Scene& scene, uint64_t seed) {
   plan_.emplace(scene, options_, rules_.finalGathers, seed);
   if (rules_.hasCausticMap && plan_->isNeeded && scene.Facts().MayHaveCaustics())
     causticRadius_ = CausticRadius(*plan_, scene, options_, seed);
+  if (rules_.finalGathers > 0 && plan_->isNeeded)
+    gatherGuide_ = GatherGuide(scene, plan_->emission, options_.maxDepth, seed);
 }
 
 PreparationUse PhotonGatherer::Preparation() const {
@@ -29,6 +33,8 @@ PreparationUse PhotonGatherer::Preparation() const {
     use.tables += TableUse::Of(causticRadius_->MemoryBytes());
     use.pilotPaths += causticRadius_->PilotPaths();
   }
+  use.tables += TableUse::Of(gatherGuide_.MemoryBytes());
+  use.pilotPaths += gatherGuide_.PilotPaths();
   return use;
 }
 
@@ -94,13 +100,18 @@ PathEstimate PhotonGatherer::Radiance(Walk walk, const PhotonPass& photons, Samp
     const double uRoulette = sampler.Get1D();
     const bool isGlossy = IsGlossy(bsdf), goesOn = isGlossy || walk.gathersLeft > 0;
     LightContext at = ContextOf(*scene_, *hit, bsdf, options_.direct);
+    const GuidedBsdf guided(*hit, bsdf, goesOn && !isGlossy ? GuideAt(*hit, bsdf) : nullptr);
     if (!bsdf.IsPurelySpecular()) {
-      estimate += walk.throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct);
+      const auto weigh = [&](int, const LiSample& li, double pdf) -> double {
+        if (li.isDelta || options_.direct.technique != DirectTechnique::Mis) return 1;
+        return PowerHeuristic(pdf, static_cast<double>(guided.Pdf(li.wi)));
+      };
+      estimate += walk.throughput * SampleDirectLight(*scene_, *hit, bsdf, at, sampler, stats, options_.direct, weigh);
       const GatherPoint point{*hit, bsdf, options_.maxDepth - walk.scattered, goesOn, sampler.BlockSeed()};
       estimate += walk.throughput * Gather(photons, point, stats);
     }
 
-    const std::optional<BsdfSample> next = SampleWayOn(*scene_, *hit, bsdf, uLobe, uDirection, stats);
+    const std::optional<BsdfSample> next = guided.Sample(*scene_, uLobe, uDirection, stats);
     if (!next) return estimate;
     walk.Scatter(*hit, *next, std::move(at));
     if (!next->IsSpecular()) {
@@ -109,6 +120,12 @@ PathEstimate PhotonGatherer::Radiance(Walk walk, const PhotonPass& photons, Samp
     }
     if (!SurvivesRoulette(uRoulette, &walk)) return estimate;
   }
+}
+
+const DirectionTable* PhotonGatherer::GuideAt(const SurfaceInteraction& hit, const Bsdf& bsdf) const {
+  // A table has the directions on one side alone.
+  if (bsdf.IsPurelySpecular() || bsdf.Flags().HasTransmission()) return nullptr;
+  return gatherGuide_.At(hit.p, FaceForward(hit.ng, hit.wo));
 }
 
 PathEstimate PhotonGatherer::Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const {

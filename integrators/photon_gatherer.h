@@ -15,6 +15,7 @@
 #include "integrators/photon_shooting.h"
 #include "integrators/pixel_loop.h"
 #include "src/base/octahedral.h"
+#include "src/photons/gather_guide.h"
 #include "src/photons/photon_map.h"
 
 namespace dapple {
@@ -75,6 +76,8 @@ class PhotonGatherer : public Integrator {
     bool isDone = false;
   };
   PathEstimate Radiance(Walk walk, const PhotonPass& photons, Sampler& sampler, PassStats& stats) const;
+  /// Where a final gather from `hit` looks; null where nothing is known.
+  const DirectionTable* GuideAt(const SurfaceInteraction& hit, const Bsdf& bsdf) const;
   PathEstimate Gather(const PhotonPass& photons, const GatherPoint& point, PassStats& stats) const;
   PathEstimate Gather(const Map& map, float radius, bool tracksBlur, const GatherPoint& point, PassStats& stats) const;
 
@@ -83,6 +86,7 @@ class PhotonGatherer : public Integrator {
   const Scene* scene_ = nullptr;
   std::optional<PhotonPlan> plan_;
   std::optional<GatherRadius> causticRadius_;  // absent without a map of caustics
+  GatherGuide gatherGuide_;                    // of final gathers, where there are any
   uint64_t seed_ = 0;
 };
 

@@ -33,27 +33,11 @@ std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission
   return all;
 }
 
-/// Where a hash table with open addressing, a power of two long and never full, holds `key` or would hold it.
-template <typename Slot>
-Slot& SlotOf(std::span<Slot> table, uint64_t key) {
-  size_t slot = key & (table.size() - 1);
-  while (table[slot].key != 0 && table[slot].key != key) slot = (slot + 1) & (table.size() - 1);
-  return table[slot];
-}
-
 }  // namespace
 
 GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options)
-    : pilotPaths_(PilotPathsFor(paths)),
-      scale_(static_cast<float>(options.scale)),
-      camera_(scene.GetCamera().Position()),
-      unit_(scene.Extent().radius) {
+    : pilotPaths_(PilotPathsFor(paths)), scale_(static_cast<float>(options.scale)), grid_(scene, kMaxPixels) {
   if (options.fixed) fixed_ = static_cast<float>(*options.fixed);
-  const Vec2i& resolution = scene.Settings().resolution;
-  const Vec2 middle(static_cast<float>(resolution.x) / 2, static_cast<float>(resolution.y) / 2);
-  const CameraRay camera = scene.GetCamera().GenerateRay(middle, Vec2d(0.5), 0.5);
-  widestAtLens_ = camera.footprintAtLens * static_cast<float>(kMaxPixels);
-  widestSpread_ = camera.footprintSpread * static_cast<float>(kMaxPixels);
   constexpr uint64_t kPilot = 3;
   std::vector<Vec3> positions =
       ShootPilot(scene, emission, pilotPaths_, options.maxDepth, options.causticsOnly, Hash(options.seed, kPilot));
@@ -79,7 +63,7 @@ std::vector<GatherRadius::Finding> GatherRadius::Learn(std::vector<Vec3> positio
       float radius = here.radius;
       shortened[i] = radius;
       // Nothing is much narrower than the narrowest; and there photons may be without number.
-      if (radius <= kSameRadius * kNarrowest * Widest(here.p)) continue;
+      if (radius <= kSameRadius * kNarrowest * grid_.Width(here.p)) continue;
       forest.ForEachWithin(here.p, radius, [&](uint32_t j, float distanceSquared) {
         radius = std::min(radius, std::max(kSameRadius * findings[j].radius, std::sqrt(distanceSquared)));
       });
@@ -94,7 +78,7 @@ GatherRadius::Finding GatherRadius::FindingAt(const PhotonForest& forest, const 
                                               std::vector<float>* squared) const {
   // So many photons, and the one in the middle, say how dense they are.
   constexpr size_t kCounted = 16;
-  const float widest = Widest(p);
+  const float widest = grid_.Width(p);
   forest.FindNearest(p, widest, kCounted + 1, squared);
   // The outermost is on the rim, or none is. Many in one place have no end of density.
   const float radiusSquared = squared->size() > kCounted ? squared->front() : Sqr(widest);
@@ -117,7 +101,7 @@ void GatherRadius::Fill(std::span<const Finding> findings) {
   for (const Finding& finding : findings) {
     for (int level = 0; level < kLevels; ++level) {
       const uint64_t key = KeyOf(finding.p, level);
-      Sums& cell = SlotOf<Sums>(sums, key);
+      Sums& cell = SlotOf(sums, key);
       cells += cell.key == 0 ? 1 : 0;
       cell.key = key;
       cell.density += static_cast<double>(finding.density);
@@ -130,35 +114,21 @@ void GatherRadius::Fill(std::span<const Finding> findings) {
   for (const Sums& cell : sums) {
     if (cell.key == 0) continue;
     const auto mean = [&](double sum) { return static_cast<float>(sum / static_cast<double>(cell.count)); };
-    SlotOf<Cell>(cells_, cell.key) = {cell.key, mean(cell.density), mean(cell.radius)};
+    SlotOf(cells_, cell.key) = {cell.key, mean(cell.density), mean(cell.radius)};
   }
-}
-
-float GatherRadius::Widest(const Vec3& p) const {
-  return std::max(widestAtLens_ + widestSpread_ * Distance(p, camera_), unit_ * 1e-9f);
-}
-
-uint64_t GatherRadius::KeyOf(const Vec3& p, int level) const {
-  // A power of two, so that neighbours at nearly the same distance share a grid.
-  const int exponent = std::ilogb(Widest(p) / unit_) + 2 * level - 1;
-  const Vec3d fromCamera = (ToDouble(p) - ToDouble(camera_)) / static_cast<double>(unit_);
-  const auto coordinate = [&](double x) { return static_cast<int64_t>(std::floor(std::ldexp(x, -exponent))); };
-  const uint64_t key = Hash(static_cast<uint64_t>(exponent), level, coordinate(fromCamera.x), coordinate(fromCamera.y),
-                            coordinate(fromCamera.z));
-  return key | 1;
 }
 
 GatherForecast GatherRadius::At(const Vec3& p) const {
   const Cell* cell = nullptr;
   for (int level = 0; level < kLevels && !cell; ++level) {
-    const Cell& slot = SlotOf<const Cell>(cells_, KeyOf(p, level));
+    const Cell& slot = SlotOf(cells_, KeyOf(p, level));
     if (slot.key != 0) cell = &slot;
   }
   GatherForecast forecast;
   if (fixed_) {
     forecast.radius = *fixed_;
   } else {
-    forecast.radius = (cell ? cell->radius : Widest(p)) * scale_;
+    forecast.radius = (cell ? cell->radius : grid_.Width(p)) * scale_;
   }
   if (cell) forecast.photons = cell->density * kPi * Sqr(forecast.radius);
   return forecast;

@@ -16,6 +16,7 @@
 
 #include "src/photons/emission_sampler.h"
 #include "src/photons/photon_forest.h"
+#include "src/photons/view_grid.h"
 
 namespace dapple {
 
@@ -64,9 +65,7 @@ class GatherRadius {
   /// Cells are about half as wide as the widest radius there; level by level four times as wide.
   static constexpr int kLevels = 3;
 
-  /// `kMaxPixels` times the width of a pixel at the distance of `p` from the camera; positive at the camera too.
-  float Widest(const Vec3& p) const;
-  uint64_t KeyOf(const Vec3& p, int level) const;
+  uint64_t KeyOf(const Vec3& p, int level) const { return grid_.KeyOf(p, 2 * level - 1, level); }
   void Fill(std::span<const Finding> findings);
   /// `toPass`: photons of a pass for one of the pilot.
   std::vector<Finding> Learn(std::vector<Vec3> positions, double toPass) const;
@@ -75,9 +74,7 @@ class GatherRadius {
   int64_t pilotPaths_ = 0;
   std::optional<float> fixed_;
   float scale_ = 1;
-  Vec3 camera_{0};
-  float unit_ = 1;  // the scene's radius: cells are cut in these units from the camera, so that no scale matters
-  float widestAtLens_ = 0, widestSpread_ = 0;
+  ViewGrid grid_;                                   // its width is that of the widest radius
   std::vector<Cell> cells_ = std::vector<Cell>(1);  // a hash table with open addressing, a power of two long
 };
 

@@ -79,9 +79,10 @@ TEST_F(Skip, NoCausticMapIsBuiltWhereNothingMakesCaustics) {
   const nlohmann::json caustic = Stats(kPoint + kMirror + kBall + floor, option);
   EXPECT_EQ(diffuse["photonMaps"]["built"], 1);
   EXPECT_EQ(caustic["photonMaps"]["built"], 2);
-  // What each pilot learned: the guide, radii of all photons, and those of caustics.
-  EXPECT_EQ(diffuse["tables"]["learned"], 2);
-  EXPECT_EQ(caustic["tables"]["learned"], 3);
+  // What each pilot learned: the guide of emission, radii of all photons, where final gathers look, and radii of
+  // caustics.
+  EXPECT_EQ(diffuse["tables"]["learned"], 3);
+  EXPECT_EQ(caustic["tables"]["learned"], 4);
 }
 
 TEST_F(Skip, ASceneWithoutAnEnvironmentBuildsNoTableOfOne) {

@@ -48,6 +48,8 @@ inline constexpr FitShare kFitShares[] = {
     {"ProjectionMap", "DirectionsFollowTheirDensity", 3},
     {"AreaLight", "TrianglesOfABigMeshAreChosenByArea", 1},
     {"LightPicker", "PicksFollowTheirProbabilities", 3},
+    {"DirectionTable", "DirectionsFollowTheirDensity", 1},
+    {"GuidedBsdfs", "DirectionsFollowTheirDensity", 2, 4},
     {"Mutation", "IsRejectedInTheSamplerInTheDensityAndInBoth", 16, 17},
 };
 
