@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "src/io/build_material_types.h"
 #include "src/materials/conductor_materials.h"
 #include "src/materials/dielectric_materials.h"
@@ -75,8 +77,16 @@ std::unique_ptr<Material> BuildMetal(const MaterialInput& in) {
 }
 
 std::unique_ptr<Material> BuildSubstrate(const MaterialInput& in) {
-  return std::make_unique<SubstrateMaterial>(in.ColorOf("Kd", 0.5), in.ColorOf("Ks", 0.5), TwoRoughnesses(in, 0.1),
-                                             BuildDetail(in));
+  auto substrate = std::make_unique<SubstrateMaterial>(in.ColorOf("Kd", 0.5), in.ColorOf("Ks", 0.5),
+                                                       TwoRoughnesses(in, 0.1), BuildDetail(in));
+  if (const float most = substrate->LargestUnscaledReflectance().value_or(1); most > 1) {
+    in.values.Context().diagnostics.Warn(
+        in.material.location,
+        fmt::format("so rough and bright a substrate would reflect up to {:.3g} times the light that arrives: it is "
+                    "scaled down by as much",
+                    static_cast<double>(most)));
+  }
+  return substrate;
 }
 
 std::unique_ptr<Material> BuildUber(const MaterialInput& in) {

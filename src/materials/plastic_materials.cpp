@@ -41,17 +41,27 @@ MaterialFacts PlasticMaterial::Facts() const {
 
 SubstrateMaterial::SubstrateMaterial(ColorTexturePtr kd, ColorTexturePtr ks, Roughness roughness,
                                      SurfaceDetailPtr detail)
-    : kd_(std::move(kd)), ks_(std::move(ks)), roughness_(std::move(roughness)), detail_(std::move(detail)) {}
+    : kd_(std::move(kd)), ks_(std::move(ks)), roughness_(std::move(roughness)), detail_(std::move(detail)) {
+  if (const std::optional<Ggx> constant = roughness_.Constant()) energy_ = BlendEnergy(roughness_.Kind(), *constant);
+}
 
 Bsdf SubstrateMaterial::GetBsdf(const SurfaceInteraction& hit) const {
   Bsdf bsdf = BlackBsdf(hit, detail_);
   const TextureContext at(hit);
   const Color kd = EvaluateShare(kd_, at, Color()), ks = EvaluateShare(ks_, at, Color());
   if (kd.IsBlack() && ks.IsBlack()) return bsdf;
-  WithMicrofacets(roughness_.Kind(), roughness_.Evaluate(at).value_or(Ggx(1e-3f, 1e-3f)), [&](const auto& microfacets) {
-    bsdf.Add(FresnelBlend{microfacets, kd, ks});
+  const Ggx ggx = roughness_.Evaluate(at).value_or(Ggx(1e-3f, 1e-3f));
+  const BlendEnergy energy = energy_ ? *energy_ : BlendEnergy(roughness_.Kind(), ggx);
+  WithMicrofacets(roughness_.Kind(), ggx, [&](const auto& microfacets) {
+    bsdf.Add(FresnelBlend{microfacets, kd, ks}, energy.Scale(ks));
   });
   return bsdf;
+}
+
+std::optional<float> SubstrateMaterial::LargestUnscaledReflectance() const {
+  if (!energy_) return std::nullopt;
+  const Color ks = ks_ && ks_->IsConstant() ? EvaluateShare(ks_, TextureContext(), Color()) : Color(ks_ ? 1 : 0);
+  return energy_->LargestReflectance(ks).MaxComponent();
 }
 
 MaterialFacts SubstrateMaterial::Facts() const {

@@ -1,6 +1,7 @@
 // pbrt-v3's materials of a diffuse base and a gloss: plastic, substrate and uber.
 #pragma once
 
+#include "src/materials/blend_energy.h"
 #include "src/materials/bump.h"
 #include "src/materials/material.h"
 #include "src/materials/roughness.h"
@@ -22,7 +23,8 @@ class PlasticMaterial final : public Material {
   SurfaceDetailPtr detail_;
 };
 
-/// pbrt-v3 "substrate": Ashikhmin and Shirley's blend of a diffuse base and an anisotropic gloss.
+/// pbrt-v3 "substrate": Ashikhmin and Shirley's blend of a diffuse base and an anisotropic gloss. Where that would
+/// reflect more than arrives, which takes alphas above one, all of it is scaled down (`BlendEnergy`).
 class SubstrateMaterial final : public Material {
  public:
   /// Colours are clamped to [0, 1].
@@ -30,9 +32,14 @@ class SubstrateMaterial final : public Material {
   Bsdf GetBsdf(const SurfaceInteraction& hit) const override;
   MaterialFacts Facts() const override;
 
+  /// The largest share of light, in any channel and from any direction, that would be reflected without that scale; of
+  /// varying `ks` where it is 1. One or less where nothing is scaled; nothing where the roughness varies.
+  std::optional<float> LargestUnscaledReflectance() const;
+
  private:
   ColorTexturePtr kd_, ks_;
   Roughness roughness_;
+  std::optional<BlendEnergy> energy_;  ///< of constant roughness
   SurfaceDetailPtr detail_;
 };
 

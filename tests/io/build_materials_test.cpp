@@ -148,6 +148,15 @@ TEST(BuildMaterials, SubstrateAndUber) {
   EXPECT_TRUE(uber.hasSpecular && uber.hasTransmission);
 }
 
+TEST(BuildMaterials, SubstratesThatWouldGainEnergyAreScaledWithAWarningOfTheirPlace) {
+  const std::string rough = R"(Material "substrate" "float uroughness" [1] "float vroughness" [1] "rgb Ks" )";
+  const Built scaled = BuildWorld(rough + "[1 1 1]\n" + Square(3), 3);
+  ASSERT_EQ(scaled.warnings.size(), 1u);
+  EXPECT_EQ(scaled.warnings[0].substr(0, 20), "a.pbrt:5:1: warning:");
+  EXPECT_NE(scaled.warnings[0].find("1.43 times"), std::string::npos) << scaled.warnings[0];
+  BsdfOf(rough + "[.6 .6 .6]", 3);  // reflects no more than arrives: without a word
+}
+
 TEST(BuildMaterials, MixesOfBothVersions) {
   const std::string v3 = R"(MakeNamedMaterial "a" "string type" "matte" "rgb Kd" [0 0 0]
       MakeNamedMaterial "b" "string type" "matte" "rgb Kd" [1 1 1]

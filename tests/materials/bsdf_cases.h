@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "src/materials/blend_energy.h"
 #include "src/materials/bsdf.h"
 #include "src/materials/fresnel.h"
 
@@ -24,6 +25,8 @@ inline std::vector<WeightedLobes> NonSpecularCases() {
   const Color gray(0.6f, 0.5f, 0.4f), eta(0.2f, 0.9f, 1.1f), k(3.9f, 2.45f, 2.14f);
   const float fe = FresnelDiffuseReflectance(1.5f);
   static const CoatTransmittance kRoughCoat(1.5f, 0.1f, 0.5f);
+  const Ggx roughest(1.62f, 1.62f);
+  const BlendEnergy roughestEnergy(MicrofacetKind::Ggx, roughest);
   return {
       {"LambertianReflection", {{LambertianReflection{gray}, Color(1)}}},
       {"LambertianTransmission", {{LambertianTransmission{gray}, Color(0.5f)}}},
@@ -50,7 +53,8 @@ inline std::vector<WeightedLobes> NonSpecularCases() {
       {"FresnelBlend", {{FresnelBlend{Ggx(0.2f, 0.4f), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
       {"BeckmannFresnelBlend", {{FresnelBlend{Beckmann(0.3f, 0.3f), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
       {"AshikhminShirleyFresnelBlend", {{FresnelBlend{CosinePower(60, 10), gray, Color(0.3f, 0.2f, 0.1f)}, Color(1)}}},
-      {"RoughestFresnelBlend", {{FresnelBlend{Ggx(1, 1), Color(1), Color(1)}, Color(1)}}},
+      {"RoughFresnelBlend", {{FresnelBlend{Ggx(1, 1), Color(1), Color(1)}, Color(1)}}},
+      {"ScaledFresnelBlend", {{FresnelBlend{roughest, Color(1), Color(1)}, roughestEnergy.Scale(Color(1))}}},
       {"RoughCoatedDiffuseBase", {{CoatedDiffuseBase(gray, 1.5f, 0.3f, kRoughCoat), Color(1)}}},
       {"CoatedDiffuseBase", {{CoatedDiffuseBase(gray, 1.5f, fe), Color(1)}}},
       {"CoatedRoughConductor", {{CoatedRoughConductor{Ggx(0.3f, 0.3f), 1.5f, eta / 1.5f, k / 1.5f}, Color(1)}}},

@@ -146,7 +146,6 @@ TEST(MaterialFacts, KnowConstantRoughness) {
 
 TEST(Materials, NeverCreateLight) {
   for (const auto& [name, material] : AllMaterials()) {
-    if (name == "plastic") continue;  // pbrt-v3's is no energy model
     for (const float c : {1.f, 0.5f, 0.1f, -0.7f}) {
       const Estimate albedo = AlbedoOf(material->GetBsdf(HitAt(0.75f)), Direction(c, 1), 4000, 3);
       EXPECT_LE(albedo.mean.MaxComponent(), 1 + 5 * albedo.sigma + 1e-5f) << name << " cos " << c;

@@ -37,7 +37,7 @@ inline constexpr FitShare kFitShares[] = {
     {"WarpsChiSquare", "Bilinear", 4},
     {"DistributionChiSquare", "OneDimension", 9},
     {"DistributionChiSquare", "TwoDimensions", 4},
-    {"NonSpecularBsdf", "SamplesFollowThePdf", 14, 32},
+    {"NonSpecularBsdf", "SamplesFollowThePdf", 14, 33},
     {"Microfacets", "VisibleNormalsFollowTheirDensity", 14, 4},
     {"Microfacets", "SamplingLeavesAUniformNumber", 7, 4},
     {"EveryLightProof", "DirectionsTowardItFollowTheirDensity", 134},
