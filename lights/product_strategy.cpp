@@ -12,6 +12,7 @@ namespace {
 constexpr int kSplits = 64;               // of the heaviest leaves, once all are of the coarse level
 constexpr int kCoarseNodes = 8;           // along the longer side of the map, at least
 constexpr int kMostDirections = 1 << 16;  // of the finest level
+constexpr size_t kUsualNodes = 512;       // of a tree: more are rare
 constexpr double kLeastOfParent = 1. / 8;
 
 double ScatteringToward(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
@@ -20,25 +21,8 @@ double ScatteringToward(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
 
 }  // namespace
 
-/// Those that a receiver has done with serve the next ones of the thread, with the memory that they have got: so a
-/// vertex of a path builds its tree without asking for any for its nodes. Hardly more than two are in use at once.
 struct ProductStrategy::Tree final : ReceiverTable {
-  using ReceiverTable::ReceiverTable;
-
-  /// An empty one.
-  static std::shared_ptr<Tree> For(const Light* light) {
-    std::unique_ptr<Tree> tree;
-    if (Spare().empty()) {
-      tree = std::make_unique<Tree>(light);
-    } else {
-      tree = std::move(Spare().back());
-      Spare().pop_back();
-      tree->light = light;
-      tree->nodes.clear();
-      tree->leaves.clear();
-    }
-    return {tree.release(), [](Tree* done) { Spare().emplace_back(done); }};
-  }
+  explicit Tree(const Light* of) : ReceiverTable(of) { nodes.reserve(kUsualNodes); }
 
   void WeightsBelow(const Node& node, double (&weights)[4]) const {
     for (int i = 0; i < 4; ++i) weights[i] = nodes[static_cast<size_t>(node.firstChild + i)].weight;
@@ -48,13 +32,6 @@ struct ProductStrategy::Tree final : ReceiverTable {
   }
 
   std::vector<Node> nodes;  // the root first, children behind their parent
-  std::vector<int> leaves;  // that may be split: a heap by weight
-
- private:
-  static std::vector<std::unique_ptr<Tree>>& Spare() {
-    thread_local std::vector<std::unique_ptr<Tree>> spare;
-    return spare;
-  }
 };
 
 ProductStrategy::ProductStrategy(const EnvironmentSpace& space) : space_(space) {
@@ -135,7 +112,8 @@ void ProductStrategy::Split(int index, const Bsdf& bsdf, const Vec3& wo, Tree* t
 
 void ProductStrategy::Refine(const Bsdf& bsdf, const Vec3& wo, Tree* tree) const {
   std::vector<Node>& nodes = tree->nodes;
-  std::vector<int>& leaves = tree->leaves;
+  std::vector<int> leaves;  // that may be split: a heap by weight
+  leaves.reserve(kUsualNodes);
   const auto isLighter = [&nodes](int a, int b) {
     return nodes[static_cast<size_t>(a)].weight < nodes[static_cast<size_t>(b)].weight;
   };
@@ -165,7 +143,7 @@ std::shared_ptr<const ReceiverTable> ProductStrategy::PrepareReceiver(const Bsdf
   // The mean over the sphere: whatever it is at the root, finer nodes know better.
   const double mean = static_cast<double>(bsdf.Albedo(wo).MaxComponent()) / (4 * kPiD);
   if (!(mean > 0)) return nullptr;
-  const std::shared_ptr<Tree> tree = Tree::For(space_.light);
+  const auto tree = std::make_shared<Tree>(space_.light);
   std::vector<Node>& nodes = tree->nodes;
   const PyramidNode root = pyramid_.Root();
   nodes.push_back({root, mean, mean * pyramid_.Weight(root), -1});
