@@ -24,7 +24,7 @@ enum class EnvironmentEmission {
 struct EnvironmentOptions {
   EnvironmentEmission emission = EnvironmentEmission::Importance;
   EnvironmentSampling sampling = EnvironmentSampling::Importance;  ///< of `Sample_Li`
-  int samples = 1;  ///< `Light::SampleCount`; for so many Compensated makes its table
+  int samples = 1;                                                 ///< `Light::SampleCount`
 };
 
 class EnvironmentLight final : public Light {
@@ -40,6 +40,9 @@ class EnvironmentLight final : public Light {
   std::string_view Name() const override { return "infinite"; }
   bool IsInfinite() const override { return true; }
   void Prepare(const SceneExtent& extent) override;
+  void PrepareChoice(double probability) override {
+    if (strategy_) strategy_->PrepareChoice(probability);
+  }
   /// The integral of radiance times the area of the disk, over all directions; relative error below 5e-5.
   Color Power() const override { return power_; }
   double ImportanceAt(const LightContext& at) const override;

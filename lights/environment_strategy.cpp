@@ -57,16 +57,17 @@ class CosineStrategy final : public EnvironmentStrategy {
   static bool HasSurface(const LightContext& at) { return LengthSquared(at.n) > 0; }
 };
 
-/// Radiance less its mean (Karlik et al. 2019, "MIS compensation: optimizing sampling techniques in multiple importance
-/// sampling", for as many samples of the light as of the BSDF): where the map is dimmer the density is zero, and BSDF
-/// sampling alone finds its light. Where the light draws N directions for one of the BSDF, less is left to that: here
-/// 2 / (N + 1) of the mean, with N the light's count; beside BSDF sampling the estimate is unbiased with any other
-/// count. Without BSDF sampling the light below would be lost, so then the map's own density is used; so it is where
-/// nothing exceeds the threshold.
+/// Radiance less a threshold (Karlik et al. 2019, "MIS compensation: optimizing sampling techniques in multiple
+/// importance sampling"): where the map is dimmer the density is zero, and BSDF sampling alone finds its light. The
+/// threshold is 2 (1 - c) times the mean, with c the light's share of all samples: for one of the BSDF there are n P of
+/// the light, its own count times the probability that it is picked. Beside BSDF sampling the estimate is unbiased with
+/// any other threshold. Without BSDF sampling the light below would be lost, so then the map's own density is used; so
+/// it is where nothing exceeds the threshold.
 class CompensatedStrategy final : public EnvironmentStrategy {
  public:
-  explicit CompensatedStrategy(const EnvironmentSpace& space)
-      : space_(space), compensated_(space.map.MakeDensity(Threshold(space))) {}
+  explicit CompensatedStrategy(const EnvironmentSpace& space) : space_(space), compensated_(MadeFor(space, 1)) {}
+
+  void PrepareChoice(double probability) override { compensated_ = MadeFor(space_, probability); }
 
   Vec3 Sample(const LightContext& at, const LiRandom& u) const override { return space_.Sample(DensityFor(at), u); }
   double Pdf(const LightContext& at, const Vec3&, const EnvironmentPlace& place) const override {
@@ -76,9 +77,9 @@ class CompensatedStrategy final : public EnvironmentStrategy {
   TableUse Tables() const override { return TableUse::Of(compensated_.table.MemoryBytes()); }
 
  private:
-  static double Threshold(const EnvironmentSpace& space) {
-    const double bsdfShare = 1. / (space.light->SampleCount() + 1);
-    return 2 * bsdfShare * space.map.MeanImportance();
+  static EnvironmentDensity MadeFor(const EnvironmentSpace& space, double probability) {
+    const double bsdfShare = 1 / (space.light->SampleCount() * probability + 1);
+    return space.map.MakeDensity(2 * bsdfShare * space.map.MeanImportance());
   }
 
   const EnvironmentDensity& DensityFor(const LightContext& at) const {

@@ -5,7 +5,7 @@
 //   "cosine"       by the cosine at the receiver: its upper hemisphere, or both where light passes through
 //   "importance"   by radiance, from the map's own table, which emission uses too; the default
 //   "irradiance"   by radiance times the cosine at the receiver
-//   "compensated"  by radiance less its mean, where positive: what BSDF sampling finds well is left to it
+//   "compensated"  by radiance less about its mean, where positive: what BSDF sampling finds well is left to it
 //   "structured"   by strata of radiance and solid angle, so that dim wide parts get more than their share
 //   "product"      by radiance times what the receiver scatters of it
 // `docs/environment.md` compares them.
@@ -32,6 +32,9 @@ class EnvironmentStrategy {
   virtual double Pdf(const LightContext& at, const Vec3& wi, const EnvironmentPlace& place) const = 0;
   /// The random numbers with which `Sample` gives `wi`.
   virtual LiRandom Invert(const LightContext& at, const Vec3& wi) const = 0;
+
+  /// As of `Light`.
+  virtual void PrepareChoice(double /*probability*/) {}
 
   /// Beside those of the map.
   virtual TableUse Tables() const { return {}; }

@@ -135,6 +135,9 @@ class Light {
 
   /// Called once, before all else.
   virtual void Prepare(const SceneExtent&) {}
+  /// Called once more, where there are other lights: with what probability next-event estimation picks this one, at a
+  /// point in the middle of the scene. A light may adapt to it how it draws directions, and nothing else.
+  virtual void PrepareChoice(double /*probability*/) {}
 
   /// Total emitted flux, as `Sample_Le` emits it, in W (scene units).
   virtual Color Power() const = 0;

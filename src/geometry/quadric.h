@@ -65,6 +65,7 @@ class Quadric : public Shape {
 
   Vec3d ToObject(const Vec3& p) const { return renderToObject_.Point(ToDouble(p)); }
   Vec3d ToRender(const Vec3d& p) const { return objectToRender_.Point(p); }
+  Vec3d ToRenderVector(const Vec3d& w) const { return objectToRender_.Vector(w); }
   /// Render-space area per object-space area where the object-space unit normal is `n`.
   double AreaStretch(const Vec3d& n) const;
   ShapeSample SampleAt(const Vec3d& p, double pdf) const;

@@ -5,6 +5,7 @@
 #include "src/base/error.h"
 #include "src/base/frame.h"
 #include "src/geometry/surface_math.h"
+#include "src/sampling/warps.h"
 
 namespace dapple {
 namespace {
@@ -65,6 +66,15 @@ struct Cone {
   double radius, distance, oneMinusCosMax;
   Vec3d axis, s, t;
 };
+
+/// The distance from `from`, not outside a sphere of radius `r` around the origin, to it along the unit vector `w`:
+/// without cancellation, however near it is.
+double DistanceFromInside(const Vec3d& from, const Vec3d& w, double r) {
+  const double distance = Length(from), along = Dot(from, w);
+  const double product = (r - distance) * (r + distance);  // of the distances both ways
+  const double root = std::sqrt(along * along + product);
+  return along > 0 ? product / (along + root) : root - along;
+}
 
 }  // namespace
 
@@ -191,8 +201,9 @@ Vec2d Sphere::InvertLocal(const Vec3d& p) const {
 }
 
 std::optional<ShapeSample> Sphere::SampleSolidAngle(int primitive, const Vec3& reference, const Vec2d& u) const {
+  if (!isWhole_) return Quadric::SampleSolidAngle(primitive, reference, u);
   const Vec3d from = ToObject(reference);
-  if (!isWhole_ || !(Length(from) > radius_)) return Quadric::SampleSolidAngle(primitive, reference, u);
+  if (!(Length(from) > radius_)) return SampleFromInside(reference, u);
   const Cone cone(from, radius_);
   const Vec3d p = cone.Sample(u);
   ShapeSample sample = SampleAt(p, SolidAngleShrink(p - from) / cone.SolidAngle());
@@ -200,18 +211,30 @@ std::optional<ShapeSample> Sphere::SampleSolidAngle(int primitive, const Vec3& r
   return sample;
 }
 
+std::optional<ShapeSample> Sphere::SampleFromInside(const Vec3& reference, const Vec2d& u) const {
+  const Vec3d from = ToObject(reference), w = SampleSphere(u);
+  const double distance = DistanceFromInside(from, w, radius_);
+  if (!(distance > 0)) return std::nullopt;
+  ShapeSample sample = SampleAt(Project(from + w * distance), SolidAngleShrink(w) * kSpherePdf);
+  sample.toPoint = ToRenderVector(w) * distance;
+  return sample;
+}
+
 double Sphere::PdfSolidAngle(int primitive, const Vec3& reference, const Vec3& p, const Vec3& n) const {
-  const Vec3d from = ToObject(reference);
-  if (!isWhole_ || !(Length(from) > radius_)) return Quadric::PdfSolidAngle(primitive, reference, p, n);
+  if (!isWhole_) return Quadric::PdfSolidAngle(primitive, reference, p, n);
+  const Vec3d from = ToObject(reference), on = Project(ToObject(p));
+  if (on == from) return 0;
+  const double shrink = SolidAngleShrink(on - from);
+  if (!(Length(from) > radius_)) return shrink * kSpherePdf;
   const Cone cone(from, radius_);
-  const Vec3d on = Project(ToObject(p));
-  return cone.Sees(on) ? SolidAngleShrink(on - from) / cone.SolidAngle() : 0;
+  return cone.Sees(on) ? shrink / cone.SolidAngle() : 0;
 }
 
 Vec2d Sphere::InvertSolidAngle(int primitive, const Vec3& reference, const Vec3& p) const {
-  const Vec3d from = ToObject(reference);
-  if (!isWhole_ || !(Length(from) > radius_)) return Quadric::InvertSolidAngle(primitive, reference, p);
-  return Cone(from, radius_).Invert(Project(ToObject(p)));
+  if (!isWhole_) return Quadric::InvertSolidAngle(primitive, reference, p);
+  const Vec3d from = ToObject(reference), on = Project(ToObject(p));
+  if (Length(from) > radius_) return Cone(from, radius_).Invert(on);
+  return on == from ? Vec2d(0) : InvertSphere(Normalize(on - from));
 }
 
 }  // namespace dapple

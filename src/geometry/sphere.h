@@ -21,7 +21,7 @@ class Sphere final : public Quadric {
   Vec2 Uv(const PrimitiveHit& hit) const override;
   double PrimitiveArea(int primitive) const override { return primitive == 0 ? area_ : 0; }
   /// Of a whole sphere (or ellipsoid) from outside: uniform over the cone that touches it, in object space
-  /// (pbrt-v4, 6.2.4); otherwise by area.
+  /// (pbrt-v4, 6.2.4), from inside over all directions there; of a part of one by area.
   std::optional<ShapeSample> SampleSolidAngle(int primitive, const Vec3& reference, const Vec2d& u) const override;
   double PdfSolidAngle(int primitive, const Vec3& reference, const Vec3& p, const Vec3& n) const override;
   Vec2d InvertSolidAngle(int primitive, const Vec3& reference, const Vec3& p) const override;
@@ -40,6 +40,7 @@ class Sphere final : public Quadric {
 
  private:
   bool Contains(const Vec3d& p) const;
+  std::optional<ShapeSample> SampleFromInside(const Vec3& reference, const Vec2d& u) const;
   double IntegrateArea() const;
 
   double radius_, zMin_, zMax_, phiMax_;

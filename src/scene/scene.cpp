@@ -113,7 +113,6 @@ void Scene::PrepareLights(const SceneExtent& extent, const std::vector<FileLocat
   for (size_t i = 0; i < lights_.size(); ++i) {
     lights_[i]->Prepare(extent);
     CheckPower(*lights_[i], i < locations.size() ? locations[i] : FileLocation());
-    (lights_[i]->IsInfinite() ? resources_.environmentTables : resources_.lightTables) += lights_[i]->Tables();
     if (!(lights_[i]->Power().MaxComponent() > 0)) {
       ++facts_.blackLights;
       continue;
@@ -130,6 +129,11 @@ void Scene::PrepareLights(const SceneExtent& extent, const std::vector<FileLocat
   }
   picker_ = std::make_unique<LightPicker>(lights_);
   resources_.choiceTables = picker_->Tables();
+  const LightContext middle(extent.center);
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    if (lights_.size() > 1) lights_[i]->PrepareChoice(picker_->ProbabilityFor(middle, static_cast<int>(i)));
+    (lights_[i]->IsInfinite() ? resources_.environmentTables : resources_.lightTables) += lights_[i]->Tables();
+  }
 }
 
 Ray Scene::ShadowRay(const SurfaceInteraction& from, const LiSample& to) const {

@@ -1,4 +1,6 @@
 // Light statements of both versions: what they shine, in numbers.
+#include <fmt/format.h>
+
 #include "src/base/numerics.h"
 #include "src/image/image_io.h"
 #include "tests/io/build_test_support.h"
@@ -243,6 +245,35 @@ TEST(BuildLights, CompensationGoesByTheSamplesThatAreTaken) {
   EXPECT_EQ(pdfDown("", 16), pdfDown(sixteen, {}));
   EXPECT_EQ(pdfDown(R"("integer samples" 2)", 16), pdfDown(sixteen, {}));
   EXPECT_EQ(pdfDown(sixteen, 1), 0);
+}
+
+// The light's samples are so many as its count times the probability that it is picked: the dimmer ground has
+// (0.5 - t) / (1 - t) of the sky's density, where t is 2 / (n P + 1) times the mean radiance.
+TEST(BuildLights, CompensationGoesByTheChoiceAmongLights) {
+  const TestFolder folder;
+  Image map = Image::Rgb(8, 16);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 8; ++x) map.SetColor(x, y, Color(y < 8 ? 1.f : 0.5f));
+  WriteExr((folder.Path() / "map.exr").string(), map);
+  for (const float intensity : {0.f, 0.2f, 2.f, 8.f}) {
+    const std::string lamp = intensity > 0 ? fmt::format(
+                                                 "LightSource \"point\" \"rgb I\" [{0} {0} {0}] "
+                                                 "\"point from\" [0 0 1.5] ",
+                                                 intensity)
+                                           : "";
+    const Built built = Lit(R"(LightSource "infinite" "string mapname" "map.exr" "string sampling" "compensated"
+                               "integer samples" 16 )" +
+                                lamp,
+                            3, folder.Path());
+    LightContext at(built->Extent().center);
+    const double picked = built->Picker().ProbabilityFor(at, 0);
+    at.bsdfDrawsToo = true;
+    const auto pdf = [&](const Vec3& wi) { return built->Lights()[0]->Pdf_Li(at, Normalize(wi), nullptr); };
+    const double threshold = 2 / (16 * picked + 1) * 0.75;
+    const double ratio = std::max(0.0, 0.5 - threshold) / (1 - threshold);
+    EXPECT_NEAR(pdf(Vec3(0.5f, 0.2f, -1)) / pdf(Vec3(0.5f, 0.2f, 1)), ratio, 1e-4) << picked;
+    EXPECT_TRUE(intensity == 0 ? picked == 1 : picked < 0.95) << intensity;
+  }
 }
 
 TEST(BuildLights, EnvironmentMapsOfBothVersions) {

@@ -47,6 +47,18 @@ TEST(LightStress, SphereFromAMillionthToAMillionRadiiAway) {
   }
 }
 
+// Wherever a point is inside, a plane there has the irradiance pi L.
+TEST(LightStress, SphereFromInside) {
+  const Sphere sphere(Transform(), true, 1);
+  const AreaLight light(&sphere, Color(2), false);
+  for (const float z : {0.f, 0.5f, 0.999f, 0.999999f, -0.999999f}) {
+    for (const float up : {1.f, -1.f}) {
+      const LightContext at(Vec3(0, 0, z), Vec3(0, 0, up), false);
+      EXPECT_NEAR(IrradianceByMidpoints(light, at, 64, 4) / (2 * kPiD), 1, kRelativeError) << z << " " << up;
+    }
+  }
+}
+
 // Of a ball of any size the same, and of a scene that is scaled with it.
 TEST(LightStress, SpheresOfAllSizes) {
   for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
