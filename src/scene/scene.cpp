@@ -108,12 +108,16 @@ std::vector<GeometryEntry> Scene::GeometryEntries() const {
 }
 
 void Scene::PrepareLights(const SceneExtent& extent, const std::vector<FileLocation>& locations) {
+  const auto countTables = [this](const Light& light) {
+    (light.IsInfinite() ? resources_.environmentTables : resources_.lightTables) += light.Tables();
+  };
   std::vector<std::unique_ptr<Light>> emitting;
   std::vector<int> newIndex(lights_.size(), -1);
   for (size_t i = 0; i < lights_.size(); ++i) {
     lights_[i]->Prepare(extent);
     CheckPower(*lights_[i], i < locations.size() ? locations[i] : FileLocation());
     if (!(lights_[i]->Power().MaxComponent() > 0)) {
+      countTables(*lights_[i]);
       ++facts_.blackLights;
       continue;
     }
@@ -132,7 +136,7 @@ void Scene::PrepareLights(const SceneExtent& extent, const std::vector<FileLocat
   const LightContext middle(extent.center);
   for (size_t i = 0; i < lights_.size(); ++i) {
     if (lights_.size() > 1) lights_[i]->PrepareChoice(picker_->ProbabilityFor(middle, static_cast<int>(i)));
-    (lights_[i]->IsInfinite() ? resources_.environmentTables : resources_.lightTables) += lights_[i]->Tables();
+    countTables(*lights_[i]);
   }
 }
 
