@@ -113,11 +113,18 @@ TEST(Warps, Triangle) {
 
 constexpr testing::ChiSquareOptions kOptions{.samples = 50'000, .rows = 16, .columns = 32, .seed = 9};
 
+/// Warps that have no parameters are counted in cells of three shapes: as many along both axes, and few along one.
+constexpr testing::ChiSquareOptions kGrids[] = {kOptions,
+                                                {.samples = 50'000, .rows = 100, .columns = 5, .seed = 10},
+                                                {.samples = 50'000, .rows = 3, .columns = 200, .seed = 11}};
+
 TEST(WarpsChiSquare, Disks) {
   for (const auto& warp : {SampleDiskPolar, SampleDiskConcentric}) {
-    const testing::ChiSquare fit = testing::ChiSquareOnDisk(
-        warp, [](const Vec2d&) { return kDiskPdf; }, kOptions);
-    EXPECT_TRUE(fit.Passes()) << fit.message;
+    for (const testing::ChiSquareOptions& grid : kGrids) {
+      const testing::ChiSquare fit = testing::ChiSquareOnDisk(
+          warp, [](const Vec2d&) { return kDiskPdf; }, grid);
+      EXPECT_TRUE(fit.Passes()) << fit.message;
+    }
   }
 }
 
@@ -163,8 +170,9 @@ TEST(WarpsChiSquare, Cone) {
 }
 
 // On the unit square: the triangle fills half of it.
-void ExpectFitOnSquare(const std::function<Vec2d(const Vec2d&)>& sample,
-                       const std::function<double(const Vec2d&)>& pdf) {
+void ExpectFitOnSquare(const std::function<Vec2d(const Vec2d&)>& sample, const std::function<double(const Vec2d&)>& pdf,
+                       const testing::ChiSquareOptions& grid = {
+                           .samples = 50'000, .rows = 20, .columns = 20, .seed = 9}) {
   const testing::ChiSquare fit = testing::ChiSquareOnCube<2>(
       [&](testing::UniformNumbers& random) {
         const Vec2d p = sample(random.Get2D());
@@ -173,12 +181,14 @@ void ExpectFitOnSquare(const std::function<Vec2d(const Vec2d&)>& sample,
       [&](const testing::Coordinates<2>& x) {
         return pdf({x[0], x[1]});
       },
-      {20, 20}, kOptions.samples, kOptions.seed);
+      {grid.rows, grid.columns}, grid.samples, grid.seed);
   EXPECT_TRUE(fit.Passes()) << fit.message;
 }
 
 TEST(WarpsChiSquare, Triangle) {
-  ExpectFitOnSquare(SampleTriangle, [](auto& b) { return b.x + b.y <= 1 ? 2.0 : 0.0; });
+  for (const testing::ChiSquareOptions& grid : kGrids)
+    ExpectFitOnSquare(
+        SampleTriangle, [](auto& b) { return b.x + b.y <= 1 ? 2.0 : 0.0; }, grid);
 }
 
 TEST(WarpsChiSquare, Linear) {
