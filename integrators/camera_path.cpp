@@ -4,8 +4,8 @@
 
 namespace dapple {
 
-PixelSample SamplePixel(const Scene& scene, const Film& film, const Vec2i& pixel, Sampler& sampler) {
-  const FilterSample offset = film.PixelFilter().Sample(sampler.Get2D());
+PixelSample SamplePixel(const Scene& scene, const Filter& filter, const Vec2i& pixel, Sampler& sampler) {
+  const FilterSample offset = filter.Sample(sampler.Get2D());
   const Vec2 position(static_cast<float>(pixel.x + 0.5 + offset.offset.x),
                       static_cast<float>(pixel.y + 0.5 + offset.offset.y));
   const Vec2d uLens = sampler.Get2D();

@@ -16,7 +16,7 @@ struct PixelSample {
 };
 
 /// Uses block 0 of the sampler.
-PixelSample SamplePixel(const Scene& scene, const Film& film, const Vec2i& pixel, Sampler& sampler);
+PixelSample SamplePixel(const Scene& scene, const Filter& filter, const Vec2i& pixel, Sampler& sampler);
 
 /// How a path came to where it is, as multiple importance sampling must know it of the light it runs into.
 struct LastScattering {

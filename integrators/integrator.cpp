@@ -55,16 +55,14 @@ PassStats& PassStats::operator+=(const PassStats& s) {
 
 std::vector<std::pair<std::string, std::string>> DescribeOptions(const IntegratorOptions& options) {
   // All members by name: one that is added and not told here does not compile. The guide follows from the others.
-  const auto& [maxDepth, photonsPerPass, radius, radiusScale, kernel, guideEmission, guide, direct] = options;
+  const auto& [maxDepth, photonsPerPass, cameraSamples, radius, radiusScale, kernel, guideEmission, guide, direct] =
+      options;
   const auto& [technique, lightSamples] = direct;
   return {
-      {"max-depth", fmt::format("{}", maxDepth)},
-      {"photons", ToText(photonsPerPass)},
-      {"radius", ToText(radius)},
-      {"radius-scale", fmt::format("{}", radiusScale)},
-      {"kernel", ToText(kernel)},
-      {"guide", guideEmission ? "on" : "off"},
-      {"direct", ToText(technique)},
+      {"max-depth", fmt::format("{}", maxDepth)},       {"photons", ToText(photonsPerPass)},
+      {"camera-samples", ToText(cameraSamples)},        {"radius", ToText(radius)},
+      {"radius-scale", fmt::format("{}", radiusScale)}, {"kernel", ToText(kernel)},
+      {"guide", guideEmission ? "on" : "off"},          {"direct", ToText(technique)},
       {"light-samples", ToText(lightSamples)},
   };
 }

@@ -68,8 +68,11 @@ class EmissionGuide;
 struct IntegratorOptions {
   int maxDepth = 32;                  ///< scattering events on a path from light to camera
   std::optional<int> photonsPerPass;  ///< light paths a pass
-  std::optional<double> radius;       ///< starting radius of density estimates, in scene units
-  double radiusScale = 1;             ///< factor on the learned radii (gather_radius.h), where `radius` is absent
+  /// Of `path`: camera paths a pixel and pass in the mean, more of them where the picture is noisy
+  /// (sample_allocation.h). Absent: one through each pixel.
+  std::optional<int> cameraSamples;
+  std::optional<double> radius;  ///< starting radius of density estimates, in scene units
+  double radiusScale = 1;        ///< factor on the learned radii (gather_radius.h), where `radius` is absent
   KernelShape kernel = KernelShape::Epanechnikov;  ///< of density estimates
   bool guideEmission = true;  ///< a pilot learns where photons are of use (src/photons/emission_guide.h)
   /// What that pilot has learned already, of this scene, depth and seed, without final gathers; null: not yet.

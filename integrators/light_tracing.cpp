@@ -26,7 +26,7 @@ PassStats LightTracingIntegrator::RenderPass(int pass, Film& film) const {
 PassStats LightTracingIntegrator::RenderEmitters(int pass, Film& film) const {
   return ForEachPixel(film, [&](const Vec2i& pixel, PassStats& stats) {
     Sampler sampler = Sampler::ForPixel(seed_, pixel, pass);
-    const PixelSample sample = SamplePixel(*scene_, film, pixel, sampler);
+    const PixelSample sample = SamplePixel(*scene_, film.PixelFilter(), pixel, sampler);
     Ray ray = sample.camera.ray;
     Color emitted;
     for (;;) {

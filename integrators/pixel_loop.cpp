@@ -61,14 +61,15 @@ PassStats ForEachPixel(const Film& film, const std::function<void(const Vec2i&, 
   return sum;
 }
 
-PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,
+PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, const SampleAllocation& samples,
                        const std::function<PathEstimate(const CameraRay&, Sampler&, PassStats&)>& radiance,
                        Film& film) {
   return ForEachPixel(film, [&](const Vec2i& pixel, PassStats& stats) {
-    for (int i = 0; i < samples; ++i) {
-      Sampler sampler = Sampler::ForPixel(seed, pixel, pass, i, samples);
-      const PixelSample sample = SamplePixel(scene, film, pixel, sampler);
-      const float weight = sample.weight / static_cast<float>(samples);
+    const int count = samples.At(pixel);
+    for (int i = 0; i < count; ++i) {
+      Sampler sampler = Sampler::ForPixel(seed, pixel, pass, i, count);
+      const PixelSample sample = SamplePixel(scene, film.PixelFilter(), pixel, sampler);
+      const float weight = sample.weight / static_cast<float>(count);
       const PathEstimate estimate = radiance(sample.camera, sampler, stats);
       film.AddSample(pixel, FiniteSample(estimate.radiance * weight, stats), pass);
       if (film.TracksBlur()) film.AddBlur(pixel, estimate.blur * weight, pass);

@@ -3,9 +3,8 @@
 
 #include <functional>
 
-#include "integrators/integrator.h"
+#include "integrators/sample_allocation.h"
 #include "src/image/film.h"
-#include "src/sampling/sampler.h"
 
 namespace dapple {
 
@@ -36,9 +35,9 @@ struct PathEstimate {
   Color blur;  ///< by how much that exceeds what gathers of half the radius give (`Film::AddBlur`)
 };
 
-/// Adds an estimate of each pixel of the film's crop: the mean over `samples` camera paths of
+/// Adds an estimate of each pixel of the film's crop: the mean over as many camera paths as `samples` gives it of
 /// `radiance(camera, sampler, stats)`, where block 0 of the sampler is used up.
-PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, int samples,
+PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, const SampleAllocation& samples,
                        const std::function<PathEstimate(const CameraRay&, Sampler&, PassStats&)>& radiance, Film& film);
 
 }  // namespace dapple

@@ -34,6 +34,16 @@ std::string_view WhyPathsFindAll(const SceneFacts& facts, int maxDepth) {
   return "";
 }
 
+/// Camera paths of `path`, in the mean of the picture: the fewest with which quiet places have a quarter of them.
+constexpr int kCameraSamples = 4;
+
+IntegratorChoice ChoosePath(std::string_view reason) {
+  return {
+      "path",
+      fmt::format("{}; {} camera paths a pixel and pass in the mean, more where it is noisy", reason, kCameraSamples),
+      nullptr, kCameraSamples};
+}
+
 /// As few digits as tell.
 std::string Digits(double x) { return x < 9.95 ? fmt::format("{:.2g}", x) : fmt::format("{:.0f}", x); }
 std::string Percent(double share) { return share < 1e-4 ? "less than 0.01 %" : Digits(100 * share) + " %"; }
@@ -42,7 +52,7 @@ std::string Percent(double share) { return share < 1e-4 ? "less than 0.01 %" : D
 
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed) {
   if (const std::string_view why = WhyPathsFindAll(scene.Facts(), options.maxDepth); !why.empty())
-    return {"path", std::string(why), nullptr};
+    return ChoosePath(why);
   IntegratorOptions guided = options;
   guided.guide = std::make_shared<const EmissionGuide>(GuideOf(scene, options, 0, seed));
   const RareLight rare = FindRareLight(scene, guided, seed);
@@ -50,11 +60,11 @@ IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& o
       "by a pilot {} of the light seen comes in ways that paths find seldom; photons lower the variance of a "
       "pass {} times",
       Percent(rare.share), Digits(rare.Gain()));
-  if (rare.share == 0) return {"path", "a pilot of light paths met no light that paths find seldom", nullptr};
-  if (rare.Gain() < kCostOfPhotons) return {"path", finding + ", less than they cost", nullptr};
+  if (rare.share == 0) return ChoosePath("a pilot of light paths met no light that paths find seldom");
+  if (rare.Gain() < kCostOfPhotons) return ChoosePath(finding + ", less than they cost");
   if (options.direct.technique != DirectTechnique::Mis)
-    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide};
-  return {"hybrid", finding, guided.guide};
+    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}};
+  return {"hybrid", finding, guided.guide, {}};
 }
 
 bool IsLeftToDapple(std::string_view requested, std::string_view fromScene) {
@@ -67,8 +77,8 @@ IntegratorChoice ResolveIntegrator(std::string_view requested, const Scene& scen
                                    uint64_t seed) {
   const std::string& fromScene = scene.Settings().integrator;
   if (IsLeftToDapple(requested, fromScene)) return SelectIntegrator(scene, options, seed);
-  if (requested.empty()) return {fromScene, "the scene asks for it", nullptr};
-  return {std::string(requested), "asked for", nullptr};
+  if (requested.empty()) return {fromScene, "the scene asks for it", nullptr, {}};
+  return {std::string(requested), "asked for", nullptr, {}};
 }
 
 }  // namespace dapple

@@ -1,6 +1,7 @@
 // Which algorithm renders a scene, and why: the rule behind "auto".
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,10 +13,13 @@ namespace dapple {
 struct IntegratorChoice {
   std::string name;
   std::string reason;
-  std::shared_ptr<const EmissionGuide> guide;  ///< what a pilot learned on the way, for `IntegratorOptions`; or null
+  /// What goes into `IntegratorOptions`, beside what the user has said.
+  std::shared_ptr<const EmissionGuide> guide;  ///< what a pilot learned on the way; or null
+  std::optional<int> cameraSamples;
 };
 
-/// "path" where what the scene holds makes no light that paths find seldom; else a pilot (rare_light.h) tells whether
+/// "path", with more camera paths where the picture is noisy, where what the scene holds makes no light that paths find
+/// seldom; else a pilot (rare_light.h) tells whether
 /// photons are worth what they cost: then "hybrid". Where direct light shall be found by one technique alone, "hybrid",
 /// which joins all, gives way to "sppm". Depends on scene, options and seed alone.
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed);

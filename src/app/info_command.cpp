@@ -85,11 +85,13 @@ bool TracesPhotons(const RenderPlan& plan) { return plan.choice.name != "path"; 
 void PrintNeeds(const Scene& scene, const RenderPlan& plan) {
   const RenderSettings& settings = scene.Settings();
   const auto pixels = static_cast<double>(settings.crop.Area());
-  std::string work = fmt::format("a pass has {} camera paths", FormatCount(pixels));
+  const int samples = plan.choice.name == "path" ? plan.options.cameraSamples.value_or(1) : 1;
+  std::string work = fmt::format("a pass has {} camera paths", FormatCount(samples * pixels));
   if (TracesPhotons(plan)) {
-    const double pictureArea = static_cast<double>(settings.resolution.x) * settings.resolution.y;
-    const double photons = plan.options.photonsPerPass.value_or(0) > 0 ? *plan.options.photonsPerPass : pictureArea;
-    work += fmt::format(" and {} light paths", FormatCount(photons));
+    const int64_t paths = plan.choice.name == "light_tracing"
+                              ? LightPathsOfPass(scene, plan.options)
+                              : EstimateLightPaths(scene, plan.options, static_cast<uint64_t>(int64_t{plan.seed}));
+    work += fmt::format(" and {} light paths", FormatCount(static_cast<double>(paths)));
   }
   PrintLine("needs", work);
   constexpr double kFilmBytesPerPixel = 2 * Color::kComponents * sizeof(FixedPoint);  // two halves, see film.h

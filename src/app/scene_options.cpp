@@ -23,7 +23,7 @@ namespace dapple {
 
 namespace {
 
-constexpr int kMaxLightSamples = 1 << 16;
+constexpr int kMaxLightSamples = 1 << 16, kMaxCameraSamples = 1 << 12;
 
 /// The numbers of `text`, which `separator` parts; nothing where it holds anything else.
 template <typename T>
@@ -145,6 +145,13 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
       ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
       ->type_name("N")
       ->group(group);
+  command
+      ->add_option("--camera-samples", options->cameraSamples,
+                   "path: camera paths a pixel and pass in the mean, more of them where a pilot finds noise; without "
+                   "it one through each pixel, or with auto 4 in the mean")
+      ->check(CLI::Range(1, kMaxCameraSamples).description(""))
+      ->type_name("N")
+      ->group(group);
   command->add_option("--photons", options->photons, "Light paths a pass")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
       ->type_name("N")
@@ -191,6 +198,12 @@ std::optional<T> Either(const std::optional<T>& first, const std::optional<T>& s
   return first ? first : second;
 }
 
+/// Passes that take as many camera paths as `samples` passes of one path a pixel.
+int PassesOf(int samples, const RenderPlan& plan) {
+  const int samplesOfPass = plan.options.cameraSamples.value_or(1);
+  return samples / samplesOfPass + (samples % samplesOfPass > 0 ? 1 : 0);
+}
+
 void SetBudget(const RenderSettings& settings, const SceneOptions& options, RenderPlan* plan) {
   const bool hasIterations = plan->choice.name == "sppm" && settings.iterations;
   if (options.seconds) {
@@ -201,10 +214,10 @@ void SetBudget(const RenderSettings& settings, const SceneOptions& options, Rend
     plan->budget.firstPass = static_cast<int>(options.passes->begin);
     plan->budgetReason = "asked for";
   } else if (hasIterations || settings.samplesPerPixel) {
-    plan->budget.passes = hasIterations ? settings.iterations : settings.samplesPerPixel;
+    plan->budget.passes = hasIterations ? *settings.iterations : PassesOf(*settings.samplesPerPixel, *plan);
     plan->budgetReason = hasIterations ? "the scene's iterations" : "the scene's samples a pixel";
   } else {
-    plan->budget.passes = plan->integrator->DefaultPasses();
+    plan->budget.passes = PassesOf(plan->integrator->DefaultPasses(), *plan);
     plan->budgetReason = "the integrator's default";
   }
 }
@@ -317,12 +330,14 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.seed = Either(options.seed, settings.seed).value_or(0);
   plan.options.maxDepth = Either(options.maxDepth, settings.maxDepth).value_or(plan.options.maxDepth);
   plan.options.photonsPerPass = options.photons;
+  plan.options.cameraSamples = options.cameraSamples;
   plan.options.radius = options.radius;
   plan.options.kernel = options.kernel;
   plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
   plan.choice = ResolveIntegrator(options.integrator, scene, plan.options, static_cast<uint64_t>(int64_t{plan.seed}));
   plan.options.guide = plan.choice.guide;
+  if (!plan.options.cameraSamples) plan.options.cameraSamples = plan.choice.cameraSamples;
   if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
   // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
   if (plan.choice.name == "sppm") {

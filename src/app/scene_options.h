@@ -44,6 +44,7 @@ struct SceneOptions {
   std::optional<float> clamp;  ///< `Film::ClampTo`
   std::optional<int> maxDepth;
   std::optional<int> photons;
+  std::optional<int> cameraSamples;
   std::optional<double> radius;
   KernelShape kernel = KernelShape::Epanechnikov;
   bool noGuide = false;

@@ -150,7 +150,7 @@ PassStats RecordFirstHits(const Scene& scene, uint64_t seed, int pass, Film& fil
   const std::vector<size_t> places = PlacesOf(film.ExtraChannels());
   return ForEachPixel(film, [&](const Vec2i& pixel, PassStats& stats) {
     Sampler sampler = Sampler::ForPixel(seed, pixel, pass);
-    const FirstHit hit = FindFirstHit(scene, SamplePixel(scene, film, pixel, sampler).camera.ray, stats);
+    const FirstHit hit = FindFirstHit(scene, SamplePixel(scene, film.PixelFilter(), pixel, sampler).camera.ray, stats);
     FirstHit values;
     for (size_t i = 0; i < places.size(); ++i) values[i] = hit[places[i]];
     film.AddExtras(pixel, std::span(values).first(places.size()));
