@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "integrators/photon_shooting.h"
 #include "src/app/command.h"
 #include "src/app/format.h"
 #include "src/app/memory.h"

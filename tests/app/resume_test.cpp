@@ -118,6 +118,7 @@ TEST_F(Resume, RefusesTheCheckpointOfAnotherRenderAndSaysWhatDiffers) {
 // What Dapple chose may be named outright, and the reverse, where that is the same render; where the choice changes how
 // an environment is sampled, that is what is told.
 TEST_F(Resume, WhatWasChosenMayBeNamedWhereTheBitsAreTheSame) {
+  const char* const kPath = "path --camera-samples 4";
   WriteScene("tiny.pbrt");
   WriteExr(Path("sky.exr"), Image(2, 2, {"Y"}, {1, 2, 3, 4}));
   const std::string begin =
@@ -128,7 +129,7 @@ TEST_F(Resume, WhatWasChosenMayBeNamedWhereTheBitsAreTheSame) {
   Write("sky.pbrt", begin + sky + "\n");
   Write("told.pbrt", begin + sky + " \"string sampling\" \"irradiance\"\n");
   for (const std::string scene : {"point.pbrt", "told.pbrt", "sky.pbrt"})
-    for (const auto& [first, second] : {std::pair("auto", "path"), std::pair("path", "auto")}) {
+    for (const auto& [first, second] : {std::pair("auto", kPath), std::pair(kPath, "auto")}) {
       const std::string command = scene + " --quiet -o a.exr --checkpoint 60 --integrator ";
       ASSERT_EQ(Run(command + second + " --passes 3").exitCode, 0);
       const std::string whole = Read("a.exr");
@@ -146,6 +147,9 @@ TEST_F(Resume, WhatWasChosenMayBeNamedWhereTheBitsAreTheSame) {
         EXPECT_TRUE(Read("a.exr") == whole) << scene << ": " << first << ", then " << second;
       }
     }
+  ASSERT_EQ(Run("point.pbrt --quiet -o a.exr --checkpoint 60 --integrator auto --passes 1").exitCode, 0);
+  EXPECT_TRUE(Contains(Run("point.pbrt --quiet -o a.exr --integrator path --passes 3 --resume").err,
+                       "camera-samples 4, not automatic"));
 }
 
 // Lights so bright that what they give overflows in the integrator, or is more than the film holds.
