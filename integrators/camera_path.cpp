@@ -60,15 +60,16 @@ std::optional<BsdfSample> SampleWayOn(const Scene& scene, const SurfaceInteracti
   return next;
 }
 
-std::optional<WaysOn> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit, const Bsdf& bsdf) {
+std::optional<SpecularPair> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit, const Bsdf& bsdf) {
   constexpr float kLeast = 0.01f;
   if (!walk.isAllSpecular) return std::nullopt;
-  const auto pair = bsdf.SpecularPair(hit.wo);
+  const auto pair = bsdf.BothWays(hit.wo);
   if (!pair) return std::nullopt;
   // What refraction does to radiance comes back where the path leaves the medium: with it ways would be without number.
-  for (const BsdfSample& way : *pair)
-    if (!((walk.throughput * way.weight).MaxComponent() * walk.etaScale * Sqr(way.eta) >= kLeast)) return std::nullopt;
-  return WaysOn{pair->front(), pair->back()};
+  const auto counts = [&](const BsdfSample& way) {
+    return (walk.throughput * way.weight).MaxComponent() * walk.etaScale * Sqr(way.eta) >= kLeast;
+  };
+  return counts(pair->reflected) && counts(pair->transmitted) ? pair : std::nullopt;
 }
 
 double LightPdf(const Scene& scene, const LightContext& at, int index, const Vec3& wi, const SurfaceInteraction* hit,

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "integrators/integrator.h"
 #include "src/sampling/sampler.h"
@@ -39,6 +42,7 @@ struct CameraWalk {
 
   /// Goes on from `hit`; `at`, unless the scattering is specular: where light was asked for.
   void Scatter(const SurfaceInteraction& hit, const BsdfSample& next, LightContext at = LightContext(Vec3(0)));
+  void ScatterSpecular(const SurfaceInteraction& hit, const BsdfSample& next) { Scatter(hit, next); }
 };
 
 /// Radiance that the path's last ray runs into: the sum over the lights it finds of their radiance times
@@ -66,16 +70,25 @@ Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const
 Color SampleDirectLight(const Scene& scene, const SurfaceInteraction& hit, const Bsdf& bsdf, const LightContext& at,
                         Sampler& sampler, PassStats& stats, const DirectLighting& direct = {});
 
-/// What comes by the two ways of a smooth interface.
-struct WaysOn {
-  BsdfSample reflected, transmitted;  ///< each with its whole share as weight
-};
-
 /// Both ways on where a camera path that met nothing but specular surfaces comes to a smooth interface, so that what
 /// either brings is no matter of chance; nothing where one of them would count for less than a hundredth of what the
 /// camera sees. All techniques that find the paths behind share this beginning, so no weight of multiple importance
 /// sampling changes. For walks that soon end in a gather of photons; it would cost long paths more time than it saves.
-std::optional<WaysOn> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit, const Bsdf& bsdf);
+std::optional<SpecularPair> SplitWayOn(const CameraWalk& walk, const SurfaceInteraction& hit, const Bsdf& bsdf);
+
+/// Where `SplitWayOn` parts the walk, sends it on through the interface, and returns what `follow(Walk, Sampler&)`
+/// finds by the other way; nothing where it does not. Takes no number of the sampler's block.
+template <typename Walk, typename Follow>
+auto FollowReflected(Walk* walk, const SurfaceInteraction& hit, const Bsdf& bsdf, const Sampler& sampler,
+                     Follow&& follow) -> std::optional<std::invoke_result_t<Follow, Walk, Sampler&>> {
+  const auto ways = SplitWayOn(*walk, hit, bsdf);
+  if (!ways) return std::nullopt;
+  Walk reflected = *walk;
+  reflected.ScatterSpecular(hit, ways->reflected);
+  walk->ScatterSpecular(hit, ways->transmitted);
+  Sampler fork = sampler.Fork();
+  return follow(std::move(reflected), fork);
+}
 
 /// The density per solid angle (of a delta light: the discrete probability) with which light sampling at `at` finds the
 /// direction `wi` to a light, all its samples together. `hit` as for `Light::Pdf_Li`.

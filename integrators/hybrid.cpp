@@ -84,12 +84,9 @@ PathEstimate HybridIntegrator::Radiance(Walk walk, const Merging& merging, Sampl
     walk.weights.Arrive(static_cast<double>(AbsDot(hit->ng, hit->wo)));
     ++walk.scattered;
     sampler.StartBlock(walk.scattered);
-    if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
-      Walk reflected = walk;
-      reflected.ScatterSpecular(*hit, ways->reflected);
-      Sampler fork = sampler.Fork();
-      estimate += Radiance(std::move(reflected), merging, fork, stats);
-      walk.ScatterSpecular(*hit, ways->transmitted);
+    const auto follow = [&](Walk way, Sampler& fork) { return Radiance(std::move(way), merging, fork, stats); };
+    if (const auto reflected = FollowReflected(&walk, *hit, bsdf, sampler, follow)) {
+      estimate += *reflected;
       continue;
     }
     const Vec2d uDirection = sampler.Get2D();

@@ -87,12 +87,9 @@ PathEstimate PhotonGatherer::Radiance(Walk walk, const PhotonPass& photons, Samp
 
     ++walk.scattered;
     sampler.StartBlock(walk.scattered);
-    if (const auto ways = SplitWayOn(walk, *hit, bsdf)) {
-      Walk reflected = walk;
-      reflected.Scatter(*hit, ways->reflected);
-      Sampler fork = sampler.Fork();
-      estimate += Radiance(std::move(reflected), photons, fork, stats);
-      walk.Scatter(*hit, ways->transmitted);
+    const auto follow = [&](Walk way, Sampler& fork) { return Radiance(std::move(way), photons, fork, stats); };
+    if (const auto reflected = FollowReflected(&walk, *hit, bsdf, sampler, follow)) {
+      estimate += *reflected;
       continue;
     }
     const Vec2d uDirection = sampler.Get2D();

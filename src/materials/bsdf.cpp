@@ -153,7 +153,7 @@ std::optional<BsdfSample> Bsdf::Sample(const Vec3& wo, double uc, const Vec2d& u
   return FinishNonSpecular(o, *drawn, uMirror, mode);
 }
 
-std::optional<std::array<BsdfSample, 2>> Bsdf::SpecularPair(const Vec3& wo) const {
+std::optional<SpecularPair> Bsdf::BothWays(const Vec3& wo) const {
   if (count_ != 1 || !IsPurelySpecular()) return std::nullopt;
   // A lobe's first number chooses its branch.
   std::optional<BsdfSample> reflected = Sample(wo, 0, Vec2d(0), TransportMode::Radiance);
@@ -162,7 +162,7 @@ std::optional<std::array<BsdfSample, 2>> Bsdf::SpecularPair(const Vec3& wo) cons
   if (!transmitted || transmitted->flags.HasReflection()) return std::nullopt;
   reflected->weight *= reflected->pdf;
   transmitted->weight *= transmitted->pdf;
-  return std::array{*reflected, *transmitted};
+  return SpecularPair{*reflected, *transmitted};
 }
 
 std::optional<Bsdf::Sided> Bsdf::DrawPreimage(const Vec3& local, bool allowMirrored, double u, int* count) const {

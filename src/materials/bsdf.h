@@ -13,7 +13,6 @@
 // reaches the mirrored directions too, with the exact density.
 #pragma once
 
-#include <array>
 #include <cassert>
 #include <cstdint>
 #include <optional>
@@ -37,6 +36,11 @@ struct BsdfSample {
   LobeFlags flags;  ///< of the branch of the lobe that was drawn
 
   bool IsSpecular() const { return flags.IsSpecular(); }
+};
+
+/// What comes by the two ways of a smooth interface, each with its whole share as weight (not over pdf).
+struct SpecularPair {
+  BsdfSample reflected, transmitted;
 };
 
 /// The shares of arriving flux that leave on the side where it came from, and on the other.
@@ -91,10 +95,9 @@ class Bsdf {
   /// one. Lobes are chosen in proportion to their albedo for `wo`.
   std::optional<BsdfSample> Sample(const Vec3& wo, double uc, const Vec2d& u, TransportMode mode) const;
 
-  /// The two ways that radiance comes from at a smooth interface, reflection first, each with its whole share as weight
-  /// (not over pdf), for walks that follow both. Nothing where there is one way, or more than two, or any that is not
-  /// specular.
-  std::optional<std::array<BsdfSample, 2>> SpecularPair(const Vec3& wo) const;
+  /// The two ways that radiance comes from at a smooth interface, for walks that follow both. Nothing where there is
+  /// one way, or more than two, or any that is not specular.
+  std::optional<SpecularPair> BothWays(const Vec3& wo) const;
 
   /// An estimate of the hemispherical-directional reflectance and transmittance for `wo`, for demodulation and guides.
   Color Albedo(const Vec3& wo) const;

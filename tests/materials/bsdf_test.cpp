@@ -169,21 +169,24 @@ TEST(Bsdf, ASpecularPairIsAllThatSamplingFinds) {
     for (const float tilt : {0.0f, 0.1f})
       for (const Vec3& wo : {Direction(0.9f, 0.3f), Direction(-0.9f, 1)}) {
         const Bsdf bsdf = MakeBsdf({"pair", {{lobe, Color(0.5f, 1, 0.7f)}}}, tilt);
-        const auto pair = bsdf.SpecularPair(wo);
+        const auto pair = bsdf.BothWays(wo);
         ASSERT_TRUE(pair);
-        EXPECT_NEAR(pair->front().pdf + pair->back().pdf, 1, 1e-6f);
-        Color shares[2];
+        EXPECT_NEAR(pair->reflected.pdf + pair->transmitted.pdf, 1, 1e-6f);
+        Color reflected, transmitted;
         constexpr int kDraws = 4096;
         for (int i = 0; i < kDraws; ++i) {
           const auto drawn = bsdf.Sample(wo, (i + 0.5) / kDraws, {0, 0}, TransportMode::Radiance);
           ASSERT_TRUE(drawn);
-          const size_t way = drawn->flags.HasReflection() ? 0 : 1;
-          EXPECT_EQ(drawn->wi, (*pair)[way].wi);
-          EXPECT_EQ(drawn->eta, (*pair)[way].eta);
-          shares[way] += drawn->weight / kDraws;
+          const bool isReflected = drawn->flags.HasReflection();
+          const BsdfSample& way = isReflected ? pair->reflected : pair->transmitted;
+          EXPECT_EQ(drawn->wi, way.wi);
+          EXPECT_EQ(drawn->eta, way.eta);
+          (isReflected ? reflected : transmitted) += drawn->weight / kDraws;
         }
-        for (size_t way = 0; way < 2; ++way)
-          for (int c = 0; c < 3; ++c) EXPECT_NEAR((*pair)[way].weight[c], shares[way][c], 2.0f / kDraws);
+        for (int c = 0; c < 3; ++c) {
+          EXPECT_NEAR(pair->reflected.weight[c], reflected[c], 2.0f / kDraws);
+          EXPECT_NEAR(pair->transmitted.weight[c], transmitted[c], 2.0f / kDraws);
+        }
       }
 }
 
@@ -191,7 +194,7 @@ TEST(Bsdf, OneWayOrManyAreNoSpecularPair) {
   const auto hasPair = [](const std::vector<Lobe>& lobes, const Vec3& wo) {
     Bsdf bsdf(TiltedHit(0));
     for (const Lobe& lobe : lobes) bsdf.Add(lobe, Color(0.5f));
-    return bsdf.SpecularPair(wo).has_value();
+    return bsdf.BothWays(wo).has_value();
   };
   const Vec3 above = Direction(0.9f, 0.3f), grazingBelow = Direction(-0.3f, 0.3f);
   EXPECT_TRUE(hasPair({SmoothDielectric(1.5f)}, above));
