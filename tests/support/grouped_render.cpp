@@ -19,30 +19,49 @@ Image GroupedImages::Mean() const {
   return mean;
 }
 
-GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
-                           int passes, int groups, uint64_t seed, int blockSize) {
+namespace {
+
+/// Renders the films of all groups, one after another, and calls `take(film)` for each.
+template <typename F>
+void ForEachGroup(const Scene& scene, const std::string& integrator, const IntegratorOptions& options, int passes,
+                  int groups, uint64_t seed, bool tracksBlur, F take) {
   const RenderSettings& settings = scene.Settings();
-  GroupedImages result;
   for (int group = 0; group < groups; ++group) {
     const auto algorithm = MakeIntegrator(integrator, options);
     algorithm->Prepare(scene, seed * 1000 + static_cast<uint64_t>(group));
     Film film(settings.resolution, settings.crop, settings.filter);
+    if (tracksBlur) film.TrackBlur();
     for (int pair = group; 2 * pair < passes; pair += groups)
       for (int pass : {2 * pair, 2 * pair + 1}) algorithm->RenderPass(pass, film);
-    result.groups.push_back(BlockMeans(film.ToImage(), blockSize));
+    take(film);
   }
+}
+
+/// The image less twice its blur. Both halves of the film hold as many passes.
+Image AtRadiusZero(const Film& film) {
+  Image image = film.ToImage();
+  const Image even = film.BlurImage(0), odd = film.BlurImage(1);
+  for (int y = 0; y < image.Height(); ++y)
+    for (int x = 0; x < image.Width(); ++x)
+      for (int c = 0; c < image.Channels(); ++c) image.At(x, y, c) -= even.At(x, y, c) + odd.At(x, y, c);
+  return image;
+}
+
+}  // namespace
+
+GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
+                           int passes, int groups, uint64_t seed, int blockSize) {
+  GroupedImages result;
+  ForEachGroup(scene, integrator, options, passes, groups, seed, false,
+               [&](const Film& film) { result.groups.push_back(BlockMeans(film.ToImage(), blockSize)); });
   return result;
 }
 
-GroupedImages Combine(const GroupedImages& a, double c0, const GroupedImages& b, double c1) {
-  GroupedImages result = a;
-  for (size_t g = 0; g < result.groups.size(); ++g) {
-    Image& image = result.groups[g];
-    for (int y = 0; y < image.Height(); ++y)
-      for (int x = 0; x < image.Width(); ++x)
-        for (int c = 0; c < image.Channels(); ++c)
-          image.At(x, y, c) = static_cast<float>(c0 * image.At(x, y, c) + c1 * b.groups[g].At(x, y, c));
-  }
+GroupedImages RenderGroupsAtRadiusZero(const Scene& scene, const std::string& integrator,
+                                       const IntegratorOptions& options, int passes, int groups, uint64_t seed) {
+  GroupedImages result;
+  ForEachGroup(scene, integrator, options, passes, groups, seed, true,
+               [&](const Film& film) { result.groups.push_back(AtRadiusZero(film)); });
   return result;
 }
 

@@ -26,8 +26,10 @@ struct GroupedImages {
 GroupedImages RenderGroups(const Scene& scene, const std::string& integrator, const IntegratorOptions& options,
                            int passes, int groups, uint64_t seed = 1, int blockSize = 1);
 
-/// c0 a + c1 b, group by group.
-GroupedImages Combine(const GroupedImages& a, double c0, const GroupedImages& b, double c1);
+/// The same as it would be at radius zero, to first order: twice what gathers of half the radius give, less what those
+/// of the radius itself do, both of the same photons (`Film::TrackBlur`).
+GroupedImages RenderGroupsAtRadiusZero(const Scene& scene, const std::string& integrator,
+                                       const IntegratorOptions& options, int passes, int groups, uint64_t seed);
 
 /// How block means differ from a reference.
 struct BlockReport {
