@@ -14,7 +14,7 @@ class GuidedBsdf {
   /// `table`: of the side from which the surface is seen; null: none. All must outlive this.
   GuidedBsdf(const SurfaceInteraction& hit, const Bsdf& bsdf, const DirectionTable* table)
       : hit_(hit), bsdf_(bsdf), table_(table), share_(table ? table->Share() : 0) {
-    if (share_ > 0) frame_ = Frame::FromZ(FaceForward(hit.ng, hit.wo));
+    if (share_ > 0) frame_ = GatherGuide::FrameAround(FaceForward(hit.ng, hit.wo));
   }
 
   /// Per solid angle, of all directions that are not specular.
@@ -30,7 +30,7 @@ class GuidedBsdf {
     std::optional<BsdfSample> next;
     if (uLobe < share) {
       next.emplace();
-      next->wi = frame_.ToWorld(table_->Sample(uDirection));
+      next->wi = Normalize(frame_.ToWorld(table_->Sample(uDirection)));
       next->flags = LobeFlags::kDiffuseReflection;
     } else {
       next = SampleWayOn(scene, hit_, bsdf_, (uLobe - share) / (1 - share), uDirection, stats);
@@ -43,6 +43,7 @@ class GuidedBsdf {
     }
     next->pdf = Pdf(next->wi);
     next->weight = bsdf_.Eval(hit_.wo, next->wi, TransportMode::Radiance) / next->pdf;
+    if (!next->weight.IsFinite()) stats.nonFinite.Add(NonFiniteSource::MaterialAt(scene, hit_));
     if (!next->weight.IsFinite() || next->weight.IsBlack()) return std::nullopt;
     return next;
   }

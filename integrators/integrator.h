@@ -68,8 +68,8 @@ class EmissionGuide;
 struct IntegratorOptions {
   int maxDepth = 32;                  ///< scattering events on a path from light to camera
   std::optional<int> photonsPerPass;  ///< light paths a pass
-  /// Of `path`: camera paths a pixel and pass in the mean, more of them where the picture is noisy
-  /// (sample_allocation.h). Absent: one through each pixel.
+  /// Of `path`: a pass takes as many rays as so many camera paths a pixel, and noisy places get more of them
+  /// (sample_allocation.h). Absent: one path through each pixel.
   std::optional<int> cameraSamples;
   std::optional<double> radius;  ///< starting radius of density estimates, in scene units
   double radiusScale = 1;        ///< factor on the learned radii (gather_radius.h), where `radius` is absent

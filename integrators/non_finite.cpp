@@ -1,5 +1,7 @@
 #include "integrators/non_finite.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace dapple {
@@ -12,8 +14,13 @@ std::string NameOf(const NonFiniteSource& source, const Scene& scene) {
   switch (source.kind) {
     case NonFiniteSource::Kind::Light:
       return fmt::format("light {} ({})", source.index, scene.Lights()[static_cast<size_t>(source.index)]->Name());
-    case NonFiniteSource::Kind::Material:
-      return "material " + scene.MaterialName(source.index);
+    case NonFiniteSource::Kind::Material: {
+      // A name in a scene's file may hold anything.
+      std::string name = "material " + scene.MaterialName(source.index);
+      std::replace_if(
+          name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+      return name;
+    }
     case NonFiniteSource::Kind::Integrator:
       break;
   }

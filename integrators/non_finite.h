@@ -29,7 +29,8 @@ struct NonFiniteSource {
   auto operator<=>(const NonFiniteSource&) const = default;
 };
 
-/// "light 2 (point)", as `dapple info` numbers lights; "material \"glass\" (scene.pbrt:12:1)"; "the integrator".
+/// "light 2 (point)", as `dapple info` numbers lights; "material \"glass\" (scene.pbrt:12:1)"; "the integrator". One
+/// line.
 std::string NameOf(const NonFiniteSource& source, const Scene& scene);
 
 /// How many contributions were left out, by what gave them.

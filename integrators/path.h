@@ -1,7 +1,7 @@
 // Unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986; Veach 1997,
 // chapter 9; pbrt-v4, section 14.5): the reference for all that it can see. It cannot see light of delta lights through
-// smooth glass or by mirrors, and sees caustics of small lights badly. A pass is one path a pixel, or where
-// the options say so several in the mean, more of them where the picture is noisy.
+// smooth glass or by mirrors, and sees caustics of small lights badly. A pass is one path a pixel, or as
+// much work as several, with more paths where the picture is noisy.
 #pragma once
 
 #include "integrators/camera_path.h"

@@ -23,7 +23,8 @@ void PhotonGatherer::Prepare(const Scene& scene, uint64_t seed) {
   plan_.emplace(scene, options_, rules_.finalGathers, seed);
   if (rules_.hasCausticMap && plan_->isNeeded && scene.Facts().MayHaveCaustics())
     causticRadius_ = CausticRadius(*plan_, scene, options_, seed);
-  if (rules_.finalGathers > 0 && plan_->isNeeded)
+  // One scattering before the photon lands, one where it is found, and the one whose directions are guided.
+  if (rules_.finalGathers > 0 && plan_->isNeeded && options_.maxDepth >= 3)
     gatherGuide_ = GatherGuide(scene, plan_->emission, options_.maxDepth, seed);
 }
 

@@ -66,14 +66,17 @@ PassStats RenderPixels(const Scene& scene, uint64_t seed, int pass, const Sample
                        Film& film) {
   return ForEachPixel(film, [&](const Vec2i& pixel, PassStats& stats) {
     const int count = samples.At(pixel);
+    // Added at once: what is clamped is the pixel's value of a pass, however many paths that has.
+    PathEstimate sum;
     for (int i = 0; i < count; ++i) {
       Sampler sampler = Sampler::ForPixel(seed, pixel, pass, i, count);
       const PixelSample sample = SamplePixel(scene, film.PixelFilter(), pixel, sampler);
       const float weight = sample.weight / static_cast<float>(count);
       const PathEstimate estimate = radiance(sample.camera, sampler, stats);
-      film.AddSample(pixel, FiniteSample(estimate.radiance * weight, stats), pass);
-      if (film.TracksBlur()) film.AddBlur(pixel, estimate.blur * weight, pass);
+      sum += {FiniteSample(estimate.radiance * weight, stats), estimate.blur * weight};
     }
+    film.AddSample(pixel, sum.radiance, pass);
+    if (film.TracksBlur()) film.AddBlur(pixel, sum.blur, pass);
   });
 }
 

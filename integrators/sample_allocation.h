@@ -24,8 +24,8 @@ class SampleAllocation {
   SampleAllocation(int samples) : mean_(samples) {}
 
   /// As many rays in all as `mean` paths through each pixel would take, by the pilot: at least one path through each,
-  /// and at most `kMostOfMean` times the mean. The pilot takes about two paths a pixel, or 2^18 where that is less. The
-  /// result depends on the arguments alone.
+  /// and at most `kMostOfMean` times the mean. The pilot takes about two paths a pixel, or 2^18 where that is less; of
+  /// the whole picture, so that a crop of it is rendered the same way. The result depends on the arguments alone.
   static SampleAllocation ByNoise(const Scene& scene, uint64_t seed, int mean, const Tracer& trace);
   static constexpr int kMostOfMean = 8;
 

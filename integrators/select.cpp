@@ -34,14 +34,15 @@ std::string_view WhyPathsFindAll(const SceneFacts& facts, int maxDepth) {
   return "";
 }
 
-/// Camera paths of `path`, in the mean of the picture: the fewest with which quiet places have a quarter of them.
+/// As many rays a pass as so many camera paths a pixel take: quiet places then have a quarter of the mean at least.
 constexpr int kCameraSamples = 4;
 
-IntegratorChoice ChoosePath(std::string_view reason) {
-  return {
-      "path",
-      fmt::format("{}; {} camera paths a pixel and pass in the mean, more where it is noisy", reason, kCameraSamples),
-      nullptr, kCameraSamples};
+IntegratorChoice ChoosePath(std::string_view reason, const IntegratorOptions& options) {
+  const int samples = options.cameraSamples.value_or(kCameraSamples);
+  return {"path",
+          fmt::format("{}; a pass takes as long as {} camera paths a pixel, of which noisy places get more", reason,
+                      samples),
+          nullptr, samples};
 }
 
 /// As few digits as tell.
@@ -52,16 +53,17 @@ std::string Percent(double share) { return share < 1e-4 ? "less than 0.01 %" : D
 
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed) {
   if (const std::string_view why = WhyPathsFindAll(scene.Facts(), options.maxDepth); !why.empty())
-    return ChoosePath(why);
+    return ChoosePath(why, options);
   IntegratorOptions guided = options;
+  guided.cameraSamples.reset();  // the pilot follows paths of its own
   guided.guide = std::make_shared<const EmissionGuide>(GuideOf(scene, options, 0, seed));
   const RareLight rare = FindRareLight(scene, guided, seed);
   const std::string finding = fmt::format(
       "by a pilot {} of the light seen comes in ways that paths find seldom; photons lower the variance of a "
       "pass {} times",
       Percent(rare.share), Digits(rare.Gain()));
-  if (rare.share == 0) return ChoosePath("a pilot of light paths met no light that paths find seldom");
-  if (rare.Gain() < kCostOfPhotons) return ChoosePath(finding + ", less than they cost");
+  if (rare.share == 0) return ChoosePath("a pilot of light paths met no light that paths find seldom", options);
+  if (rare.Gain() < kCostOfPhotons) return ChoosePath(finding + ", less than they cost", options);
   if (options.direct.technique != DirectTechnique::Mis)
     return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}};
   return {"hybrid", finding, guided.guide, {}};

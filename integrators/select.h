@@ -18,10 +18,10 @@ struct IntegratorChoice {
   std::optional<int> cameraSamples;
 };
 
-/// "path", with more camera paths where the picture is noisy, where what the scene holds makes no light that paths find
-/// seldom; else a pilot (rare_light.h) tells whether
-/// photons are worth what they cost: then "hybrid". Where direct light shall be found by one technique alone, "hybrid",
-/// which joins all, gives way to "sppm". Depends on scene, options and seed alone.
+/// "path", with more camera paths in noisy places, where what the scene holds makes no light that paths find seldom;
+/// else a pilot (rare_light.h) tells whether photons are worth what they cost: then "hybrid". Where direct light shall
+/// be found by one technique alone, "hybrid", which joins all, gives way to "sppm". Depends on scene, options and seed
+/// alone.
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
 
 /// True where neither the user (empty or "auto") nor the scene's file (empty, or a name that Dapple does not have)

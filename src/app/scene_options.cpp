@@ -147,8 +147,8 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
       ->group(group);
   command
       ->add_option("--camera-samples", options->cameraSamples,
-                   "path: camera paths a pixel and pass in the mean, more of them where a pilot finds noise; without "
-                   "it one through each pixel, or with auto 4 in the mean")
+                   "path: as many rays a pass as N camera paths a pixel take, more of them where a pilot finds noise; "
+                   "without it one path through each pixel, or with auto N = 4")
       ->check(CLI::Range(1, kMaxCameraSamples).description(""))
       ->type_name("N")
       ->group(group);
@@ -198,10 +198,12 @@ std::optional<T> Either(const std::optional<T>& first, const std::optional<T>& s
   return first ? first : second;
 }
 
-/// Passes that take as many camera paths as `samples` passes of one path a pixel.
+/// Passes that take about as long as `samples` passes of one camera path a pixel.
 int PassesOf(int samples, const RenderPlan& plan) {
   const int samplesOfPass = plan.options.cameraSamples.value_or(1);
-  return samples / samplesOfPass + (samples % samplesOfPass > 0 ? 1 : 0);
+  const int passes = samples / samplesOfPass + (samples % samplesOfPass > 0 ? 1 : 0);
+  // Of one pass no error could be told.
+  return std::max(passes, std::min(samples, 2));
 }
 
 void SetBudget(const RenderSettings& settings, const SceneOptions& options, RenderPlan* plan) {
@@ -337,7 +339,14 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.options.direct = {options.direct, options.lightSamples};
   plan.choice = ResolveIntegrator(options.integrator, scene, plan.options, static_cast<uint64_t>(int64_t{plan.seed}));
   plan.options.guide = plan.choice.guide;
-  if (!plan.options.cameraSamples) plan.options.cameraSamples = plan.choice.cameraSamples;
+  if (plan.choice.name == "path") {
+    plan.options.cameraSamples = Either(options.cameraSamples, plan.choice.cameraSamples);
+  } else if (options.cameraSamples) {
+    plan.options.cameraSamples.reset();
+    diagnostics.Warn(
+        FileLocation(options.scene),
+        fmt::format("--camera-samples is for path; {} takes as many camera paths as it finds best", plan.choice.name));
+  }
   if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
   // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
   if (plan.choice.name == "sppm") {

@@ -3,7 +3,6 @@
 #include <bit>
 #include <numeric>
 
-#include "src/base/frame.h"
 #include "src/base/numerics.h"
 #include "src/photons/light_path.h"
 
@@ -28,9 +27,15 @@ size_t Choose(const Shares& shares, size_t count, double* u) {
   return chosen;
 }
 
+/// The axis along which `n` is longest.
+int LongestAxis(const Vec3& n) {
+  const Vec3 a(std::abs(n.x), std::abs(n.y), std::abs(n.z));
+  return a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
+}
+
 }  // namespace
 
-DirectionTable::DirectionTable(const std::array<double, kCells>& flux, int64_t count) {
+DirectionTable::DirectionTable(const std::array<double, kCells>& flux, double squares) {
   const double sum = std::accumulate(flux.begin(), flux.end(), 0.0);
   double moment = 0;
   for (size_t i = 0; i < kCells; ++i) {
@@ -39,8 +44,9 @@ DirectionTable::DirectionTable(const std::array<double, kCells>& flux, int64_t c
     rings_[i / kSectors] += cells_[i];
     moment += kCells * share * share;
   }
-  // The relative variance of one sample that the cosine draws, without what the noise of so few photons adds.
-  const double variance = std::max(0.0, moment - 1 - kCells / static_cast<double>(count));
+  // The relative variance of one sample that the cosine draws, without what the noise of so few photons adds: of even
+  // light, kCells - 1 times the sum of their squared shares.
+  const double variance = std::max(0.0, moment - 1 - (kCells - 1) * squares / Sqr(sum));
   // Less than that is not worth the time.
   constexpr double kLeastShare = 0.05;
   const double share = 0.5 * variance / (1 + variance);
@@ -74,7 +80,7 @@ GatherGuide::GatherGuide(const Scene& scene, const EmissionSampler& emission, in
     : grid_(scene, kPixels), pilotPaths_(1 << 15) {
   constexpr uint64_t kPilot = 6;
   using Photons = std::vector<Photon>;
-  const auto chunks = ForEachLightPath<Photons>(
+  auto chunks = ForEachLightPath<Photons>(
       emission, Hash(seed, kPilot), 0, pilotPaths_,
       [&](const EmissionSample& emitted, const Sampler& sampler, Photons& chunk) {
         TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
@@ -83,11 +89,14 @@ GatherGuide::GatherGuide(const Scene& scene, const EmissionSampler& emission, in
           const float flux = v.flux.Luminance();
           if (flux > 0)
             chunk.push_back(
-                {v.hit.p, n, static_cast<uint32_t>(DirectionTable::CellOf(Frame::FromZ(n).ToLocal(v.hit.wo))), flux});
+                {v.hit.p, n, static_cast<uint32_t>(DirectionTable::CellOf(FrameAround(n).ToLocal(v.hit.wo))), flux});
         });
       });
   Photons all;
-  for (const Photons& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
+  for (Photons& chunk : chunks) {
+    all.insert(all.end(), chunk.begin(), chunk.end());
+    chunk = {};
+  }
   Learn(all);
 }
 
@@ -97,7 +106,10 @@ void GatherGuide::Learn(const std::vector<Photon>& photons) {
     int64_t photons = 0;
     size_t sum = 0;  // its number, from 1; 0: none
   };
-  using Sum = std::array<double, DirectionTable::kCells>;
+  struct Sum {
+    std::array<double, DirectionTable::kCells> flux{};
+    double squares = 0;
+  };
   std::vector<Place> places;
   std::vector<Cube*> cubeOf(photons.size());
   for (int level = 0; level < kLevels; ++level) {
@@ -116,22 +128,29 @@ void GatherGuide::Learn(const std::vector<Photon>& photons) {
         sums.emplace_back();
         cube.sum = sums.size();
       }
-      sums[cube.sum - 1][photons[i].cell] += static_cast<double>(photons[i].flux);
+      const double flux = static_cast<double>(photons[i].flux);
+      sums[cube.sum - 1].flux[photons[i].cell] += flux;
+      sums[cube.sum - 1].squares += Sqr(flux);
     }
     for (const Cube& cube : cubes) {
       if (cube.sum == 0) continue;
       places.push_back({cube.key, static_cast<uint32_t>(tables_.size())});
-      tables_.emplace_back(sums[cube.sum - 1], cube.photons);
+      tables_.emplace_back(sums[cube.sum - 1].flux, sums[cube.sum - 1].squares);
     }
   }
   places_.assign(std::bit_ceil(2 * places.size() + 1), {});
   for (const Place& place : places) SlotOf(places_, place.key) = place;
 }
 
+Frame GatherGuide::FrameAround(const Vec3& n) {
+  Vec3 tangent(0);
+  tangent[(LongestAxis(n) + 1) % 3] = 1;
+  return Frame::FromZX(n, tangent);
+}
+
 uint64_t GatherGuide::KeyOf(const Vec3& p, const Vec3& n, int level) const {
   // Surfaces that face one of six ways.
-  const Vec3 a(std::abs(n.x), std::abs(n.y), std::abs(n.z));
-  const int axis = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
+  const int axis = LongestAxis(n);
   return grid_.KeyOf(p, level, 6 * level + 2 * axis + (n[axis] > 0 ? 1 : 0));
 }
 

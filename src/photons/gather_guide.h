@@ -1,9 +1,10 @@
 // Where a final gather looks: the directions that photons come from, place by place (Jensen 1995, "Importance driven
 // path tracing using the photon map").
 //
-//   const DirectionTable* table = guide.At(hit.p, n);                  // null: nothing is known
-//   const Vec3 wi = frame.ToWorld(table->Sample(u));                   // one in `table->Share()` of all; frame around
-//   n pdf = share * table->Pdf(frame.ToLocal(wi)) + (1 - share) * bsdf.Pdf(hit.wo, wi, mode);
+//   const DirectionTable* table = guide.At(hit.p, n);       // null: nothing is known
+//   const Frame frame = GatherGuide::FrameAround(n);
+//   const Vec3 wi = frame.ToWorld(table->Sample(u));        // for the share `table->Share()` of all
+//   pdf = share * table->Pdf(frame.ToLocal(wi)) + (1 - share) * bsdf.Pdf(hit.wo, wi, mode);
 //
 // A pilot of light paths leaves photons in cubes of space as wide as a few pixels and, level by level, twice as wide;
 // a place is told by the smallest cube around it that holds enough of them. Learned before the first pass.
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "src/base/frame.h"
 #include "src/photons/emission_sampler.h"
 #include "src/photons/view_grid.h"
 #include "src/sampling/table_use.h"
@@ -26,8 +28,9 @@ class DirectionTable {
   static constexpr int kRings = 4, kSectors = 8, kCells = kRings * kSectors;
 
   DirectionTable() = default;
-  /// The density of `count` directions, their `flux` summed cell by cell; some of it is not zero.
-  DirectionTable(const std::array<double, kCells>& flux, int64_t count);
+  /// The density of directions, their `flux` summed cell by cell; some of it is not zero. `squares`: the sum of its
+  /// squares over all of them.
+  DirectionTable(const std::array<double, kCells>& flux, double squares);
 
   /// How many of the directions at a place are best drawn from here, in [0, 1/2]: none where light comes from all
   /// sides alike, as far as so few photons can tell.
@@ -53,6 +56,9 @@ class GatherGuide {
   /// Depends on the arguments alone.
   GatherGuide(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed);
 
+  /// Around the unit vector `n`, by its longest component: nearly the same for nearly the same normals that share a
+  /// table.
+  static Frame FrameAround(const Vec3& n);
   /// `n`: of unit length, on the side on which light arrives. Null where too few photons are near.
   const DirectionTable* At(const Vec3& p, const Vec3& n) const;
 

@@ -34,6 +34,32 @@ TEST_F(Program, TellsItsVersion) {
   EXPECT_TRUE(BeginsWith(result.out, "dapple " + Version() + ", " + InstructionSet()));
 }
 
+// Passes that auto makes larger are fewer by as much.
+TEST_F(Program, APassOfManyCameraPathsCountsAsMany) {
+  const auto write = [&](int samples) {
+    Write("many.pbrt",
+          "Sampler \"random\" \"integer pixelsamples\" " + std::to_string(samples) +
+              "\nCamera \"perspective\"\nFilm \"image\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+              "WorldBegin\nLightSource \"point\"\nMaterial \"matte\"\n"
+              "Translate 0 0 3 Shape \"sphere\"\nWorldEnd\n");
+  };
+  const auto passes = [&](int samples, const std::string& options) {
+    write(samples);
+    return Run("many.pbrt --quiet -o a.exr --stats stats.json " + options).exitCode == 0
+               ? nlohmann::json::parse(Read("stats.json"))["passes"].get<int>()
+               : -1;
+  };
+  EXPECT_EQ(passes(64, "--integrator path"), 64);
+  EXPECT_EQ(passes(64, "--integrator auto"), 16);
+  EXPECT_EQ(passes(64, "--integrator path --camera-samples 10"), 7);
+  EXPECT_EQ(passes(2, "--integrator auto"), 2) << "of one pass no error could be told";
+  EXPECT_EQ(passes(1, "--integrator auto"), 1);
+  EXPECT_EQ(passes(6, "--integrator hybrid --photons 10 --camera-samples 4"), 6);
+  EXPECT_TRUE(
+      Contains(Run("many.pbrt --integrator hybrid --photons 10 --passes 1 --quiet -o a.exr --camera-samples 4").err,
+               "warning: --camera-samples is for path"));
+}
+
 TEST_F(Program, StatisticsCountWhatWasDone) {
   WriteScene("tiny.pbrt");
   ASSERT_EQ(Run("tiny.pbrt --integrator path --passes 3 -o a.exr --stats stats.json --quiet").exitCode, 0);

@@ -26,7 +26,7 @@ DirectionTable UnevenTable() {
   flux[10] = 2;
   flux[22] = 0.5;
   flux[31] = 3;
-  return {flux, 1000};
+  return {flux, 0.1};
 }
 
 /// A hit seen from above at a slant.
@@ -49,9 +49,49 @@ TEST(DirectionTable, DirectionsFollowTheirDensity) {
 TEST(DirectionTable, EvenLightNeedsNoTable) {
   std::array<double, DirectionTable::kCells> even{};
   even.fill(1);
-  EXPECT_EQ(DirectionTable(even, 64).Share(), 0);
+  // Two photons a cell.
+  EXPECT_EQ(DirectionTable(even, 2 * DirectionTable::kCells * Sqr(0.5)).Share(), 0);
   EXPECT_GT(UnevenTable().Share(), 0.3f);
   EXPECT_LE(UnevenTable().Share(), 0.5f);
+}
+
+// Of photons from all sides alike the few bright ones must not look like a light; told by their number alone they do.
+TEST(DirectionTable, TakesUnevenFluxForNoise) {
+  UniformNumbers random(17);
+  double share = 0, byNumber = 0;
+  constexpr int kTables = 400, kPhotons = 64;
+  for (int i = 0; i < kTables; ++i) {
+    std::array<double, DirectionTable::kCells> flux{};
+    double sum = 0, squares = 0;
+    for (int photon = 0; photon < kPhotons; ++photon) {
+      const double f = std::exp(3 * random.Get1D());
+      flux[static_cast<size_t>(random.Get1D() * DirectionTable::kCells)] += f;
+      sum += f;
+      squares += Sqr(f);
+    }
+    share += static_cast<double>(DirectionTable(flux, squares).Share()) / kTables;
+    byNumber += static_cast<double>(DirectionTable(flux, Sqr(sum) / kPhotons).Share()) / kTables;
+  }
+  EXPECT_LT(share, 0.06);
+  EXPECT_GT(byNumber, 0.1);
+}
+
+// Triangles of one wall, and a sphere at its equator, have normals that differ by their rounding.
+TEST(GatherGuides, FramesDoNotTurnWithRounding) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {1.f, -1.f}) {
+      Vec3 n(0);
+      n[axis] = side;
+      const Frame frame = GatherGuide::FrameAround(n);
+      for (int other = 0; other < 3; ++other)
+        for (const float by : {-1e-7f, -0.f, 1e-7f}) {
+          if (other == axis) continue;
+          Vec3 near = n;
+          near[other] = by;
+          const Frame there = GatherGuide::FrameAround(near);
+          EXPECT_LT(Distance(there.s, frame.s) + Distance(there.t, frame.t), 1e-6f) << n << " " << near;
+        }
+    }
 }
 
 /// BSDFs with and without specular lobes.
@@ -138,7 +178,7 @@ TEST(GatherGuides, LookWhereLightComesFrom) {
   const DirectionTable* table = guide.At(p, n);
   ASSERT_TRUE(table);
   EXPECT_GT(table->Share(), 0.3f);
-  const Vec3 toPatch = Frame::FromZ(n).ToLocal(Normalize(patch - p));
+  const Vec3 toPatch = GatherGuide::FrameAround(n).ToLocal(Normalize(patch - p));
   EXPECT_GT(table->Pdf(toPatch), 5 * CosineHemispherePdf(static_cast<double>(toPatch.z)));
   // From below nothing is known of it, nor of what lies where no photon came.
   EXPECT_FALSE(guide.At(p, -n));
