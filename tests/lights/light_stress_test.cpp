@@ -59,6 +59,35 @@ TEST(LightStress, SphereFromInside) {
   }
 }
 
+// And the point that is drawn lies where the direction meets the sphere, from a millionth of a radius off its wall too,
+// in long double; which the random numbers come back from.
+TEST(LightStress, PointsOfASphereFromInside) {
+  const Sphere sphere(Transform(), true, 1);
+  const Vec3d aside = Normalize(Vec3d(1, -2, 0.7));
+  for (const double radius : {0.0, 0.3, 0.999, 0.999999}) {
+    const Vec3 reference = ToFloat(aside * radius);
+    const Vec3d from = ToDouble(reference);
+    for (int i = 0; i < 16 * 16; ++i) {
+      const Vec2d u((i % 16 + 0.5) / 16, (i / 16 + 0.5) / 16);
+      const auto sample = sphere.SampleSolidAngle(0, reference, u);
+      ASSERT_TRUE(sample);
+      const double length = Length(sample->toPoint);
+      const Vec3d w = sample->toPoint / length;
+      const auto of = [](double x) { return static_cast<long double>(x); };
+      const long double along = of(from.x) * of(w.x) + of(from.y) * of(w.y) + of(from.z) * of(w.z);
+      const long double squared = of(from.x) * of(from.x) + of(from.y) * of(from.y) + of(from.z) * of(from.z);
+      const long double root = std::sqrt(along * along + (1 - squared));
+      const long double truth = along > 0 ? (1 - squared) / (along + root) : root - along;
+      EXPECT_NEAR(length / static_cast<double>(truth), 1, kRelativeError) << radius << " " << u;
+      EXPECT_NEAR(Length(ToDouble(sample->p)), 1, 1e-6);
+      EXPECT_NEAR(sphere.PdfSolidAngle(0, reference, sample->p, sample->n) * 4 * kPiD, 1, kRelativeError);
+      // A float point on a sphere of radius one tells directions to a few 1e-8 over its distance.
+      const Vec2d back = sphere.InvertSolidAngle(0, reference, sample->p);
+      EXPECT_NEAR(back.y, u.y, 1e-6 / length);
+    }
+  }
+}
+
 // Of a ball of any size the same, and of a scene that is scaled with it.
 TEST(LightStress, SpheresOfAllSizes) {
   for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
