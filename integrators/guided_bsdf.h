@@ -42,6 +42,8 @@ class GuidedBsdf {
       return next;
     }
     next->pdf = Pdf(next->wi);
+    // Rounding may carry a direction into a cell that nothing is drawn in.
+    if (!(next->pdf > 0)) return std::nullopt;
     next->weight = bsdf_.Eval(hit_.wo, next->wi, TransportMode::Radiance) / next->pdf;
     if (!next->weight.IsFinite()) stats.nonFinite.Add(NonFiniteSource::MaterialAt(scene, hit_));
     if (!next->weight.IsFinite() || next->weight.IsBlack()) return std::nullopt;
