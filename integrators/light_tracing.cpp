@@ -3,6 +3,7 @@
 #include "integrators/camera_path.h"
 #include "integrators/photon_shooting.h"
 #include "integrators/pixel_loop.h"
+#include "src/photons/emission_pilot.h"
 
 namespace dapple {
 
@@ -12,8 +13,14 @@ void LightTracingIntegrator::Prepare(const Scene& scene, uint64_t seed) {
         "integrator light_tracing cannot join light paths to this camera; use a perspective camera, path or sppm");
   scene_ = &scene;
   seed_ = seed;
-  emission_.emplace(scene);
+  emission_.emplace(
+      scene, options_.guideEmission ? LearnJoinedEmissionGuide(scene, options_.maxDepth, seed) : EmissionGuide());
   paths_ = LightPathsOfPass(scene, options_);
+}
+
+PreparationUse LightTracingIntegrator::Preparation() const {
+  const EmissionGuide& guide = emission_->Guide();
+  return {TableUse::Of(guide.MemoryBytes()), guide.PilotPhotons()};
 }
 
 PassStats LightTracingIntegrator::RenderPass(int pass, Film& film) const {

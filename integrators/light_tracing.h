@@ -1,7 +1,7 @@
 // Light tracing: paths from the lights, each vertex joined to the camera (Arvo 1986; Dutre, Lafortune and Willems 1993;
 // pbrt-v4, section 16.1). It sees caustics at their best, and nothing through glass or in mirrors. What the camera sees
 // of the lights themselves comes from one ray a pixel. A pass has as many light paths as the picture has pixels, or as
-// asked.
+// asked; a pilot learns which emitted rays come into the picture.
 #pragma once
 
 #include "integrators/integrator.h"
@@ -17,6 +17,7 @@ class LightTracingIntegrator final : public Integrator {
   /// Throws `Error` where the camera cannot be joined to a point.
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
+  PreparationUse Preparation() const override;
   int DefaultPasses() const override { return 64; }
 
  private:

@@ -169,7 +169,7 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
   command
       ->add_flag(
           "--no-guide", options->noGuide,
-          "Photon algorithms: emit photons as the lights do, without a pilot that learns which of them are of use")
+          "Emit photons as the lights do, without a pilot that learns which of them are of use")
       ->group(group);
   command
       ->add_option("--light-samples", options->lightSamples,

@@ -14,6 +14,8 @@ namespace dapple {
 
 namespace {
 
+constexpr uint64_t kPilot = 2;
+
 /// Points that the camera looks at; each stands for the surface within its reach.
 struct VisiblePoints {
   PhotonMap<float> reaches;
@@ -57,26 +59,35 @@ VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t s
   return visible;
 }
 
-PilotPhoton TracePilotPhoton(const Scene& scene, const EmissionSampler& emission, const VisiblePoints& visible,
-                             Sampler sampler, int maxDepth) {
+/// Whether the picture, or what a crop leaves out of it, shows the vertex.
+bool IsInPicture(const Scene& scene, const LightVertex& vertex) {
+  const std::optional<WiSample> join = scene.GetCamera().Sample_Wi(vertex.hit.p, Vec2d(0.5));
+  if (!join) return false;
+  const Vec2& film = join->film;
+  const Vec2i& resolution = scene.Settings().resolution;
+  if (!(film.x >= 0 && film.y >= 0 && film.x < static_cast<float>(resolution.x) &&
+        film.y < static_cast<float>(resolution.y)))
+    return false;
+  if (vertex.bsdf.Eval(vertex.hit.wo, join->wi, TransportMode::Importance).IsBlack()) return false;
+  return scene.Unoccluded(SpawnRayTo(vertex.hit, join->lens, 0, Vec3(0)));
+}
+
+/// `isUseful(const LightVertex&)` says whether a light path comes to something where it meets a surface that is not
+/// purely specular.
+template <typename IsUseful>
+PilotPhoton TracePilotPhoton(const Scene& scene, const EmissionSampler& emission, Sampler sampler, int maxDepth,
+                             const IsUseful& isUseful) {
   const std::optional<EmissionSample> emitted = EmitPhoton(emission, sampler);
   if (!emitted) return {};
   int useful = 0;
-  TraceLightPath(scene, *emitted, sampler, maxDepth, [&](const LightVertex& vertex) {
-    useful += vertex.scattered > 0 && !vertex.bsdf.IsPurelySpecular() && visible.IsNear(vertex.hit.p);
-  });
+  TraceLightPath(scene, *emitted, sampler, maxDepth,
+                 [&](const LightVertex& vertex) { useful += !vertex.bsdf.IsPurelySpecular() && isUseful(vertex); });
   return {emitted->light,       emitted->own.position, emitted->own.direction,
           emitted->le.deltaPos, emitted->le.deltaDir,  useful / emitted->bend};
 }
 
-}  // namespace
-
-EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed) {
-  if (scene.Lights().empty()) return {};
-  constexpr uint64_t kPilot = 2;
-  const VisiblePoints visible = FindVisiblePoints(scene, finalGathers, Hash(seed, kPilot));
-  if (visible.maxReach == 0) return {};
-
+template <typename IsUseful>
+EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUseful& isUseful) {
   std::vector<double> power;
   for (const auto& light : scene.Lights()) power.push_back(static_cast<double>(light->Power().MaxComponent()));
   std::vector<PilotPhoton> pilot;
@@ -93,12 +104,27 @@ EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGath
     ParallelForChunks(photons, 1024, [&](int64_t begin, int64_t end) {
       for (int64_t i = begin; i < end; ++i) {
         const Sampler sampler = Sampler::ForLightPath(Hash(seed, kPilot, round), i, 0, photons);
-        pilot[first + static_cast<size_t>(i)] = TracePilotPhoton(scene, emission, visible, sampler, maxDepth);
+        pilot[first + static_cast<size_t>(i)] = TracePilotPhoton(scene, emission, sampler, maxDepth, isUseful);
       }
     });
     guide = EmissionGuide(power, pilot);
   }
   return guide;
+}
+
+}  // namespace
+
+EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed) {
+  if (scene.Lights().empty()) return {};
+  const VisiblePoints visible = FindVisiblePoints(scene, finalGathers, Hash(seed, kPilot));
+  if (visible.maxReach == 0) return {};
+  return Learn(scene, maxDepth, seed,
+               [&](const LightVertex& vertex) { return vertex.scattered > 0 && visible.IsNear(vertex.hit.p); });
+}
+
+EmissionGuide LearnJoinedEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed) {
+  if (scene.Lights().empty()) return {};
+  return Learn(scene, maxDepth, seed, [&](const LightVertex& vertex) { return IsInPicture(scene, vertex); });
 }
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// The pilot that teaches an `EmissionGuide`: which photons land, after some scattering, where the camera looks.
+// The pilot that teaches an `EmissionGuide`: which photons come to something for the camera.
 #pragma once
 
 #include <cstdint>
@@ -13,5 +13,9 @@ namespace dapple {
 /// it. `finalGathers`: diffuse scatterings of a camera path before it gathers. The
 /// result depends on the arguments alone; it bends nothing where no photon came to anything.
 EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed);
+
+/// The same for light paths whose vertices are joined to the camera, which must allow it (`Camera::CanConnect`): a
+/// vertex is of use where it is in the picture.
+EmissionGuide LearnJoinedEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed);
 
 }  // namespace dapple

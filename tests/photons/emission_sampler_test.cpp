@@ -28,11 +28,23 @@ constexpr const char* kScene =
     "Material \"glass\" AttributeBegin Translate 0 0 .7 Shape \"sphere\" \"float radius\" [.4] AttributeEnd "
     "Material \"matte\" Shape \"disk\" \"float radius\" [5] WorldEnd";
 
-class Emission : public ::testing::TestWithParam<bool> {
- protected:
-  Emission() : scene_(testing_support::SceneFromText(kScene)), emission_(*scene_) {
-    if (GetParam()) emission_ = EmissionSampler(*scene_, LearnEmissionGuide(*scene_, 8, 0, 1));
+enum class Guide { None, Gathered, Joined };
+
+EmissionGuide Learn(Guide guide, const Scene& scene, uint64_t seed = 1) {
+  switch (guide) {
+    case Guide::None:
+      return {};
+    case Guide::Gathered:
+      return LearnEmissionGuide(scene, 8, 0, seed);
+    case Guide::Joined:
+      return LearnJoinedEmissionGuide(scene, 8, seed);
   }
+  return {};
+}
+
+class Emission : public ::testing::TestWithParam<Guide> {
+ protected:
+  Emission() : scene_(testing_support::SceneFromText(kScene)), emission_(*scene_, Learn(GetParam(), *scene_)) {}
 
   static LeRandom Random(int64_t i, int64_t count) {
     Sampler sampler = Sampler::ForLightPath(7, i, 0, count);
@@ -81,7 +93,7 @@ TEST_P(Emission, DensityOfASampleIsWhatPdfSays) {
     const double own = photon->own.direction.x * 64, other = photon->own.direction.y * 64;
     const double x = photon->own.position.x * 64, y = photon->own.position.y * 64;
     const auto nearBorder = [](double c) { return std::abs(c - std::round(c)) < 0.05; };
-    if (GetParam() && (nearBorder(own) || nearBorder(other) || nearBorder(x) || nearBorder(y))) continue;
+    if (GetParam() != Guide::None && (nearBorder(own) || nearBorder(other) || nearBorder(x) || nearBorder(y))) continue;
     EXPECT_NEAR(pdf.position * pdf.direction * pdf.bend / sampled, 1, 1e-4) << "light " << photon->light;
   }
 }
@@ -100,46 +112,82 @@ TEST_P(Emission, InverseLeadsBackToTheRay) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sampler, Emission, ::testing::Values(false, true),
-                         [](const auto& guided) { return guided.param ? "Guided" : "ByPower"; });
+std::string NameOf(const ::testing::TestParamInfo<Guide>& guide) {
+  switch (guide.param) {
+    case Guide::None:
+      return "ByPower";
+    case Guide::Gathered:
+      return "GuidedToGathers";
+    case Guide::Joined:
+      return "GuidedToThePicture";
+  }
+  return "";
+}
+
+INSTANTIATE_TEST_SUITE_P(Sampler, Emission, ::testing::Values(Guide::None, Guide::Gathered, Guide::Joined), NameOf);
+
+/// How many vertices of 20,000 light paths are of use.
+template <typename IsUseful>
+int CountUseful(const Scene& scene, const EmissionSampler& emission, IsUseful isUseful) {
+  int useful = 0;
+  constexpr int kPaths = 20000;
+  for (int i = 0; i < kPaths; ++i) {
+    Sampler sampler = Sampler::ForLightPath(3, i, 0, kPaths);
+    const auto emitted = EmitPhoton(emission, sampler);
+    if (!emitted) continue;
+    TraceLightPath(scene, *emitted, sampler, 8, [&](const LightVertex& v) { useful += isUseful(v); });
+  }
+  return useful;
+}
 
 TEST(EmissionGuide, SendsMorePhotonsWhereTheyAreOfUse) {
   const auto scene = testing_support::SceneFromText(kScene);
-  const auto useful = [&](const EmissionSampler& emission) {
-    int photons = 0;
-    constexpr int kPhotons = 20000;
-    for (int i = 0; i < kPhotons; ++i) {
-      Sampler sampler = Sampler::ForLightPath(3, i, 0, kPhotons);
-      const auto photon = EmitPhoton(emission, sampler);
-      if (!photon) continue;
-      TraceLightPath(*scene, *photon, sampler, 8, [&](const LightVertex& v) { photons += v.isCaustic; });
-    }
-    return photons;
+  const auto useful = [&](Guide guide) {
+    return CountUseful(*scene, EmissionSampler(*scene, Learn(guide, *scene)),
+                       [](const LightVertex& v) { return v.isCaustic; });
   };
-  const int before = useful(EmissionSampler(*scene));
-  const int after = useful(EmissionSampler(*scene, LearnEmissionGuide(*scene, 8, 0, 1)));
-  EXPECT_GT(after, 3 * before);
+  EXPECT_GT(useful(Guide::Gathered), 3 * useful(Guide::None));
+}
+
+// The camera sees a patch of the floor around the origin, from above: no surface hides it.
+TEST(EmissionGuide, SendsMoreLightPathsIntoThePicture) {
+  const auto scene = testing_support::SceneFromText(
+      "LookAt 0 0 4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" [30] "
+      "Film \"image\" \"integer xresolution\" [64] \"integer yresolution\" [64] WorldBegin "
+      "LightSource \"point\" \"rgb I\" [5 5 5] \"point from\" [1 0 3] LightSource \"infinite\" \"rgb L\" [.3 .3 .5] "
+      "Material \"matte\" Shape \"disk\" \"float radius\" [20] WorldEnd");
+  const double halfSide = 4 * std::tan(Radians(15.0));
+  const auto useful = [&](Guide guide) {
+    return CountUseful(*scene, EmissionSampler(*scene, Learn(guide, *scene)), [&](const LightVertex& v) {
+      const Vec3d p = scene->RenderToWorld().Point(ToDouble(v.hit.p));
+      return std::abs(p.x) < halfSide && std::abs(p.y) < halfSide;
+    });
+  };
+  EXPECT_GT(useful(Guide::Joined), 5 * useful(Guide::None));
 }
 
 TEST(EmissionGuide, IsAFunctionOfTheSeedWhateverTheThreads) {
   const auto scene = testing_support::SceneFromText(kScene);
-  std::vector<Vec3> directions[2];
-  for (int threads : {1, 3}) {
-    const ThreadLimit limit(threads);
-    const EmissionSampler emission(*scene, LearnEmissionGuide(*scene, 8, 0, 5));
-    for (int i = 0; i < 100; ++i) {
-      Sampler sampler = Sampler::ForLightPath(1, i, 0, 100);
-      directions[threads / 2].push_back(EmitPhoton(emission, sampler)->le.ray.d);
+  for (const Guide guide : {Guide::Gathered, Guide::Joined}) {
+    std::vector<Vec3> directions[2];
+    for (int threads : {1, 3}) {
+      const ThreadLimit limit(threads);
+      const EmissionSampler emission(*scene, Learn(guide, *scene, 5));
+      for (int i = 0; i < 100; ++i) {
+        Sampler sampler = Sampler::ForLightPath(1, i, 0, 100);
+        directions[threads / 2].push_back(EmitPhoton(emission, sampler)->le.ray.d);
+      }
     }
+    EXPECT_EQ(directions[0], directions[1]);
   }
-  EXPECT_EQ(directions[0], directions[1]);
 }
 
 TEST(EmissionGuide, BendsNothingWhereNoPhotonComesToAnything) {
   const auto scene = testing_support::SceneFromText(
       "LookAt 0 0 5  0 0 0  0 1 0 Camera \"perspective\" Film \"image\" WorldBegin "
       "LightSource \"point\" \"rgb I\" [1 1 1] Material \"matte\" \"rgb Kd\" [0 0 0] Shape \"sphere\" WorldEnd");
-  EXPECT_TRUE(LearnEmissionGuide(*scene, 8, 0, 1).IsEmpty());
+  EXPECT_TRUE(Learn(Guide::Gathered, *scene).IsEmpty());
+  EXPECT_TRUE(Learn(Guide::Joined, *scene).IsEmpty());
 }
 
 }  // namespace
