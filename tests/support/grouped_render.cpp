@@ -102,9 +102,9 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
   BlockReport report;
   std::string failures;
   std::vector<double> sigmas;
-  report.meanRatio = CompareImages(test.Mean(), reference.Mean()).meanRatio;
   const BlockStatistics t = Statistics(test, blockSize), r = Statistics(reference, blockSize);
   const int width = test.groups.front().Width(), height = test.groups.front().Height();
+  double gotSum = 0, expectedSum = 0;
   size_t entry = 0;
   for (int y = 0; y < t.mean.Height(); ++y)
     for (int x = 0; x < t.mean.Width(); ++x) {
@@ -113,6 +113,8 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
       for (int c = 0; c < Color::kComponents; ++c, ++entry) {
         if (skipped) continue;
         const double expected = r.mean.At(x, y, c), got = t.mean.At(x, y, c);
+        expectedSum += expected;
+        gotSum += got;
         const double sigma = std::sqrt(t.variance[entry] * (1 + referenceVariance) + r.variance[entry]);
         const double excess = std::abs(got - expected) - std::max(tolerance * expected, floor) - 3 * sigma;
         if (expected > 0) sigmas.push_back(sigma / expected);
@@ -132,6 +134,7 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
       ++report.blocks;
       report.failed += blockFailed;
     }
+  if (expectedSum > 0) report.meanRatio = gotSum / expectedSum;
   if (!sigmas.empty()) {
     std::nth_element(sigmas.begin(), sigmas.begin() + static_cast<int64_t>(sigmas.size() / 2), sigmas.end());
     report.medianSigma = sigmas[sigmas.size() / 2];
@@ -140,6 +143,25 @@ BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& refere
       fmt::format("mean ratio {:.5f}, {} of {} blocks fail, median sigma {:.2f} %; worst {}{}", report.meanRatio,
                   report.failed, report.blocks, 100 * report.medianSigma, report.text, failures);
   return report;
+}
+
+std::vector<bool> PixelsOnSpecularSurfaces(const Scene& scene, float minRoughness) {
+  const PixelBounds& crop = scene.Settings().crop;
+  std::vector<bool> flags;
+  for (int y = crop.min.y; y < crop.max.y; ++y)
+    for (int x = crop.min.x; x < crop.max.x; ++x) {
+      bool specular = false;
+      for (const Vec2& offset : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(0.5f, 0.5f)}) {
+        const Vec2 film(static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y);
+        const auto hit = scene.Intersect(scene.GetCamera().GenerateRay(film, Vec2d(0.5), 0).ray);
+        const Material* material = hit ? scene.MaterialAt(*hit) : nullptr;
+        if (!material) continue;
+        const MaterialFacts facts = material->Facts();
+        specular |= facts.hasSpecular || facts.minRoughness < minRoughness;
+      }
+      flags.push_back(specular);
+    }
+  return flags;
 }
 
 }  // namespace dapple::testing_support

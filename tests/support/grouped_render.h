@@ -33,7 +33,7 @@ GroupedImages RenderGroupsAtRadiusZero(const Scene& scene, const std::string& in
 
 /// How block means differ from a reference.
 struct BlockReport {
-  double meanRatio = 1;        ///< of the whole images
+  double meanRatio = 1;        ///< of all blocks that were compared
   double worstExcess = -1;     ///< largest (|t - r| - tolerance r - 3 sigma) / (r + floor) over blocks and channels
   int blocks = 0, failed = 0;  ///< how many were compared; how many of them have a positive excess in any channel
   double medianSigma = 0;      ///< relative, over blocks and channels: a noisy picture agrees with anything
@@ -47,6 +47,10 @@ struct BlockReport {
 /// variance of a reference without groups, as a multiple of the test's.
 BlockReport CompareBlocks(const GroupedImages& test, const GroupedImages& reference, int blockSize, double tolerance,
                           const std::vector<bool>& skip = {}, double floor = 0, double referenceVariance = 0);
+
+/// One flag a pixel: any of a few rays through it meets a surface with a specular lobe, which light tracing is blind
+/// to, or with one that is nearly so (GGX alpha below `minRoughness`), which it seldom finds.
+std::vector<bool> PixelsOnSpecularSurfaces(const Scene& scene, float minRoughness = 0);
 
 /// A reference image without an error bar of its own.
 inline GroupedImages Exact(Image image) { return {{std::move(image)}}; }
