@@ -39,7 +39,7 @@ PassStats HybridIntegrator::RenderPass(int pass, Film& film) const {
   const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
     return Radiance(Walk(camera.ray), merging, sampler, tileStats);
   };
-  stats += RenderPixels(*scene_, seed_, pass, plan_->cameraSamples, radiance, film);
+  stats += RenderPixels(*scene_, seed_, pass, SampleAllocation(plan_->cameraSamples), radiance, film);
   film.FinishPass(pass);
   return stats;
 }

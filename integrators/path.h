@@ -26,7 +26,7 @@ class PathIntegrator final : public Integrator {
   SampleAllocation::Tracer Tracer() const;
 
   IntegratorOptions options_;
-  SampleAllocation samples_ = 1;
+  SampleAllocation samples_{1};
   const Scene* scene_ = nullptr;
   uint64_t seed_ = 0;
 };

@@ -45,7 +45,7 @@ PassStats PhotonGatherer::RenderPass(int pass, Film& film) const {
   const auto radiance = [&](const CameraRay& camera, Sampler& sampler, PassStats& tileStats) {
     return Radiance({camera.ray, rules_.finalGathers}, photons, sampler, tileStats);
   };
-  stats += RenderPixels(*scene_, seed_, pass, plan_->cameraSamples, radiance, film);
+  stats += RenderPixels(*scene_, seed_, pass, SampleAllocation(plan_->cameraSamples), radiance, film);
   film.FinishPass(pass);
   return stats;
 }

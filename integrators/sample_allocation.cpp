@@ -120,7 +120,7 @@ std::vector<float> Apportion(const std::vector<double>& shares, const std::vecto
 }  // namespace
 
 SampleAllocation SampleAllocation::ByNoise(const Scene& scene, uint64_t seed, int mean, const Tracer& trace) {
-  if (mean == 1) return mean;
+  if (mean == 1) return SampleAllocation(mean);
   const Vec2i& resolution = scene.Settings().resolution;
   const double pixels = static_cast<double>(resolution.x) * resolution.y;
   const double probes = std::min(kPathsAPixel * pixels, kMostPaths) / (2 * kPathsOfMean);

@@ -21,7 +21,7 @@ class SampleAllocation {
   using Tracer = std::function<Color(const CameraRay&, Sampler&, PassStats&)>;
 
   /// The same number of paths, at least one, through each pixel.
-  SampleAllocation(int samples) : mean_(samples) {}
+  explicit SampleAllocation(int samples) : mean_(samples) {}
 
   /// As many rays in all as `mean` paths through each pixel would take, by the pilot: at least one path through each,
   /// and at most `kMostOfMean` times the mean. The pilot takes about two paths a pixel, or 2^18 where that is less; of

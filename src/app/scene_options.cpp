@@ -167,9 +167,8 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
       ->type_name("SHAPE")
       ->group(group);
   command
-      ->add_flag(
-          "--no-guide", options->noGuide,
-          "Emit photons as the lights do, without a pilot that learns which of them are of use")
+      ->add_flag("--no-guide", options->noGuide,
+                 "Emit photons as the lights do, without a pilot that learns which of them are of use")
       ->group(group);
   command
       ->add_option("--light-samples", options->lightSamples,

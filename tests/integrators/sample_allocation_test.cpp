@@ -65,7 +65,7 @@ Means MeansOf(const Half& left, const Half& right, int mean = 8) {
 }
 
 TEST(SampleAllocation, IsEvenWhereNothingIsNoisyOrNothingIsSeen) {
-  const SampleAllocation even = 3;
+  const SampleAllocation even(3);
   EXPECT_EQ(even.At({5, 7}), 3);
   EXPECT_EQ(even.Table().count, 0);
   for (const double brightness : {1., 0.}) {
@@ -170,8 +170,9 @@ TEST(SampleAllocation, LeavesMeansAsTheyAreAndLowersTheirVariance) {
   };
   const auto even = TracerOf({0.1}, {0.5});
   const double byNoise = squareOf(SampleAllocation::ByNoise(*scene, 1, 8, even), even);
-  EXPECT_NEAR(byNoise / squareOf(8, even), 0.09 / 0.13, 0.05);
-  EXPECT_LT(squareOf(SampleAllocation::ByNoise(*scene, 1, 8, skewed), skewed), 0.9 * squareOf(8, skewed));
+  EXPECT_NEAR(byNoise / squareOf(SampleAllocation(8), even), 0.09 / 0.13, 0.05);
+  EXPECT_LT(squareOf(SampleAllocation::ByNoise(*scene, 1, 8, skewed), skewed),
+            0.9 * squareOf(SampleAllocation(8), skewed));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Facts of scenes made by hand: lights that are kept, what shadows and interfaces do, what the scene knows of itself.
 #include "src/scene/scene.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "lights/area_light.h"
@@ -50,6 +52,22 @@ struct Builder {
 
 std::optional<SurfaceInteraction> HitAlongX(const Scene& scene, float y) {
   return scene.Intersect({Vec3(-100, y, 0), Vec3(1, 0, 0), kInfinity, {}});
+}
+
+// A reader refuses such numbers where they stand; a program may make them.
+TEST(Scene, ALightWhosePowerIsNoNumberIsAnErrorAtItsPlace) {
+  Builder b;
+  b.parts.lights.push_back(std::make_unique<PointLight>(Vec3(0), Color(1)));
+  b.parts.lights.push_back(std::make_unique<PointLight>(Vec3(0), Color(1, std::numeric_limits<float>::quiet_NaN(), 1)));
+  const auto file = std::make_shared<const std::string>("a.pbrt");
+  b.parts.lightLocations = {{file, 1, 1}, {file, 7, 3}};
+  try {
+    b.Make();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("a.pbrt:7:3: error: light \"point\" has the power ("))
+        << error.what();
+  }
 }
 
 TEST(Scene, BlackLightsCostNothingAndTheOthersKeepTheirShapes) {
