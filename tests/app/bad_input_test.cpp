@@ -8,15 +8,12 @@
 #include <sys/resource.h>
 
 #include "tests/app/program.h"
+#include "tests/support/sanitizers.h"
 
 namespace dapple {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kIsSanitized = true;  // the shadow memory takes terabytes of addresses
-#else
-constexpr bool kIsSanitized = false;
-#endif
+using testing_support::kIsSanitized;
 
 /// Half a minute of processor time and 2 GB of addresses; beyond that the program ends by a signal, or says that the
 /// memory does not suffice.

@@ -10,6 +10,7 @@
 #include <malloc.h>
 
 #include "src/photons/photon_map.h"
+#include "tests/support/sanitizers.h"
 
 namespace dapple {
 namespace {
@@ -31,9 +32,7 @@ bool ForgetPeak() {
 }
 
 TEST(PhotonMemory, AMillionPhotonsTake64MegabytesAtMost) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizer has memory of its own";
-#endif
+  if (testing_support::kIsSanitized) GTEST_SKIP() << "the sanitizer has memory of its own";
   using Payload = std::array<float, 7>;  // flux, two directions, flags
   constexpr size_t kCount = 1000000;
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // what is freed goes back to the system
