@@ -129,9 +129,9 @@ Color HybridIntegrator::EmittedAlong(const Walk& walk, const SurfaceInteraction*
       others = LightPdf(*scene_, walk.last.at, index, ray.d, hit, options_.direct) / static_cast<double>(walk.last.pdf);
     }
     if (walk.weights.Unmerged().merging > 0) {
-      const Vec3 n = hit ? hit->ng : Vec3(0);
-      const double pdf = plan_->emission.Pdf(index, Ray{hit ? hit->p : ray.o, -ray.d}, n).Product();
-      const double cosAtLight = hit ? static_cast<double>(AbsDot(n, ray.d)) : 1;
+      const LightPoint from = hit ? LightPoint(hit->ng, hit->primitive) : LightPoint();
+      const double pdf = plan_->emission.Pdf(index, Ray{hit ? hit->p : ray.o, -ray.d}, from).Product();
+      const double cosAtLight = hit ? static_cast<double>(AbsDot(hit->ng, ray.d)) : 1;
       others += EmissionRatio(pdf, cosAtLight, false, 0) * walk.weights.Unmerged().merging;
     }
     return 1 / (1 + others);
@@ -150,7 +150,7 @@ Color HybridIntegrator::SampleDirectLight(const Walk& walk, const MergeSite& sit
       const bool isPoint = li.isDelta && !li.isDistant;
       const double distanceSquared = LengthSquared(ToDouble(li.p) - ToDouble(hit.p));
       const double cosAtLight = LengthSquared(li.n) > 0 ? static_cast<double>(AbsDot(li.n, li.wi)) : 1;
-      const double emitted = plan_->emission.Pdf(index, Ray{li.p, -li.wi}, li.n).Product();
+      const double emitted = plan_->emission.Pdf(index, Ray{li.p, -li.wi}, {li.n, li.primitive}).Product();
       others += EmissionRatio(emitted, cosAtLight, isPoint, distanceSquared) *
                 static_cast<double>(AbsDot(hit.ng, li.wi) * bsdf.Pdf(li.wi, hit.wo, TransportMode::Importance)) *
                 walk.weights.Before().merging;

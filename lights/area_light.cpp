@@ -144,6 +144,7 @@ std::optional<LiSample> AreaLight::Sample_Li(const LightContext& at, const LiRan
   sample.p = point->p;
   sample.pError = point->pError;
   sample.n = point->n;
+  sample.primitive = primitive.index;
   return sample;
 }
 
@@ -212,22 +213,22 @@ double AreaLight::DirectionPdf(float cosTheta) const {
   return twoSided_ ? std::abs(c) * (kDiskPdf / 2) : CosineHemispherePdf(c);
 }
 
-LePdf AreaLight::Pdf_Le(const Ray& ray, const Vec3& n) const {
+LePdf AreaLight::Pdf_Le(const Ray& ray, const LightPoint& from) const {
   if (area_ == 0) return {};
   double position = 1 / area_;
   if (!isUniform_) {
-    const int primitive = PrimitiveAt(ray.o);
+    const int primitive = PrimitiveOf(from, ray.o);
     position = PrimitiveProbability(primitive) * shape_->PdfArea(primitive, ray.o);
   }
-  return {position, DirectionPdf(Dot(n, ray.d))};
+  return {position, DirectionPdf(Dot(from.n, ray.d))};
 }
 
-LeRandom AreaLight::Invert_Le(const Ray& ray, const Vec3& n) const {
-  const int primitive = PrimitiveAt(ray.o);
+LeRandom AreaLight::Invert_Le(const Ray& ray, const LightPoint& from) const {
+  const int primitive = PrimitiveOf(from, ray.o);
   LeRandom u;
   u.part = InvertPrimitive(primitive);
   if (ball_) {
-    const Vec3d d = ToDouble(ray.d), normal = ToDouble(n);
+    const Vec3d d = ToDouble(ray.d), normal = ToDouble(from.n);
     Vec3d s, t;
     CoordinateSystem(d, &s, &t);
     u.direction = InvertSphere(d);
@@ -235,13 +236,14 @@ LeRandom AreaLight::Invert_Le(const Ray& ray, const Vec3& n) const {
     return u;
   }
   u.position = shape_->InvertArea(primitive, ray.o);
-  const Vec3 local = Frame::FromZ(n).ToLocal(ray.d);
+  const Vec3 local = Frame::FromZ(from.n).ToLocal(ray.d);
   u.direction = InvertCosineHemisphere(ToDouble(local));
   if (twoSided_) u.direction.x = (u.direction.x + (local.z < 0 ? 1 : 0)) / 2;
   return u;
 }
 
-int AreaLight::PrimitiveAt(const Vec3& p) const {
+int AreaLight::PrimitiveOf(const LightPoint& from, const Vec3& p) const {
+  if (from.primitive >= 0) return from.primitive;
   int nearest = 0;
   double nearestDistance = std::numeric_limits<double>::infinity();
   for (int i = 0; i < byArea_.Size(); ++i) {

@@ -36,10 +36,9 @@ class AreaLight final : public Light {
   LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
 
   std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
-  /// `part` is the middle of what gives the primitive. Finds the primitive nearest to the ray's origin: slow in big
-  /// meshes.
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override;
+  /// `part` is the middle of what gives the primitive.
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override;
 
   Color L(const SurfaceInteraction& hit, const Vec3& w) const override;
 
@@ -71,7 +70,8 @@ class AreaLight final : public Light {
   double InvertPrimitive(int primitive) const {
     return byArea_.Size() > 0 ? byArea_.InvertDiscrete(primitive, 0.5) : 0.5;
   }
-  int PrimitiveAt(const Vec3& p) const;
+  /// Of a ray that leaves from `p`.
+  int PrimitiveOf(const LightPoint& from, const Vec3& p) const;
   /// `Sample_Le` of a ball, direction first: 1 / (4 pi) times cos / (pi r^2) is the product 1 / area times cos / pi.
   std::optional<LeSample> SampleBall(const LeRandom& u) const;
   /// The density per solid angle of an emitted ray whose angle with the outside normal has this cosine.

@@ -38,9 +38,9 @@ std::optional<LeSample> DistantLight::Sample_Le(const LeRandom& u) const {
   return sample;
 }
 
-LePdf DistantLight::Pdf_Le(const Ray& ray, const Vec3&) const { return {disk_.Pdf(ray.o), 1}; }
+LePdf DistantLight::Pdf_Le(const Ray& ray, const LightPoint&) const { return {disk_.Pdf(ray.o), 1}; }
 
-LeRandom DistantLight::Invert_Le(const Ray& ray, const Vec3&) const {
+LeRandom DistantLight::Invert_Le(const Ray& ray, const LightPoint&) const {
   LeRandom u;
   u.position = disk_.Invert(ray.o);
   return u;

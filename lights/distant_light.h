@@ -26,8 +26,8 @@ class DistantLight final : public Light {
   LiRandom Invert_Li(const LightContext&, const Vec3&, const SurfaceInteraction*) const override { return {}; }
 
   std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override;
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override;
 
  private:
   Vec3 direction_;

@@ -74,11 +74,11 @@ std::optional<LeSample> EnvironmentLight::Sample_Le(const LeRandom& u) const {
   return sample;
 }
 
-LePdf EnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
+LePdf EnvironmentLight::Pdf_Le(const Ray& ray, const LightPoint&) const {
   return {disks_.Toward(-ray.d).Pdf(ray.o), EmissionPdf(map_.Evaluate(ToMap(-ray.d)))};
 }
 
-LeRandom EnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
+LeRandom EnvironmentLight::Invert_Le(const Ray& ray, const LightPoint&) const {
   LeRandom u;
   if (!map_.IsBlack()) {
     const Vec3d w = ToMap(-ray.d);
@@ -140,11 +140,11 @@ std::optional<LeSample> UniformEnvironmentLight::Sample_Le(const LeRandom& u) co
   return sample;
 }
 
-LePdf UniformEnvironmentLight::Pdf_Le(const Ray& ray, const Vec3&) const {
+LePdf UniformEnvironmentLight::Pdf_Le(const Ray& ray, const LightPoint&) const {
   return {disks_.Toward(-ray.d).Pdf(ray.o), kSpherePdf};
 }
 
-LeRandom UniformEnvironmentLight::Invert_Le(const Ray& ray, const Vec3&) const {
+LeRandom UniformEnvironmentLight::Invert_Le(const Ray& ray, const LightPoint&) const {
   LeRandom u;
   u.position = disks_.Toward(-ray.d).Invert(ray.o);
   u.direction = InvertSphere(ToDouble(-ray.d));

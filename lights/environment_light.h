@@ -52,8 +52,8 @@ class EnvironmentLight final : public Light {
   LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
 
   std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override;
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override;
 
   Color Le(const Ray& ray) const override;
   RadianceWithPdf LeWithPdf(const LightContext& at, const Ray& ray) const override { return Toward(at, ray.d); }
@@ -105,8 +105,8 @@ class UniformEnvironmentLight final : public Light {
   LiRandom Invert_Li(const LightContext& at, const Vec3& wi, const SurfaceInteraction* hit) const override;
 
   std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override;
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override;
 
   Color Le(const Ray&) const override { return L_; }
   TableUse Tables() const override { return disks_.Table(); }

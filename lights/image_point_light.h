@@ -42,8 +42,10 @@ class ImagePointLight : public Light {
     sample.deltaPos = true;
     return sample;
   }
-  LePdf Pdf_Le(const Ray& ray, const Vec3&) const override { return {1, map_.Evaluate(frame_.ToLight(ray.d)).pdf}; }
-  LeRandom Invert_Le(const Ray& ray, const Vec3&) const override {
+  LePdf Pdf_Le(const Ray& ray, const LightPoint&) const override {
+    return {1, map_.Evaluate(frame_.ToLight(ray.d)).pdf};
+  }
+  LeRandom Invert_Le(const Ray& ray, const LightPoint&) const override {
     LeRandom u;
     if (!map_.IsBlack()) u.direction = map_.Invert(frame_.ToLight(ray.d));
     return u;

@@ -58,12 +58,13 @@ struct LightContext {
 
 /// Light that may arrive at a point.
 struct LiSample {
-  Color L;           ///< radiance; for a delta light, irradiance on a plane across wi
-  Vec3 wi;           ///< unit direction toward the light
-  double pdf = 0;    ///< per solid angle; 1 for a delta light
-  Vec3 p;            ///< the point on the light; outside the scene for infinite lights
-  float pError = 0;  ///< as in SurfaceInteraction
-  Vec3 n{0, 0, 0};   ///< its normal; zero where there is no surface
+  Color L;             ///< radiance; for a delta light, irradiance on a plane across wi
+  Vec3 wi;             ///< unit direction toward the light
+  double pdf = 0;      ///< per solid angle; 1 for a delta light
+  Vec3 p;              ///< the point on the light; outside the scene for infinite lights
+  float pError = 0;    ///< as in SurfaceInteraction
+  Vec3 n{0, 0, 0};     ///< its normal; zero where there is no surface
+  int primitive = -1;  ///< of the light's shape, where it has one
   bool isDelta = false;
   bool isDistant = false;  ///< comes from infinitely far away: a direction and no place
 };
@@ -88,6 +89,15 @@ struct LeSample {
 struct RadianceWithPdf {
   Color L;
   double pdf = 0;
+};
+
+/// Where a ray leaves its light, beside its origin.
+struct LightPoint {
+  Vec3 n{0, 0, 0};     ///< unit normal; zero where there is no surface
+  int primitive = -1;  ///< of the light's shape; -1: whichever is nearest to the origin, which takes long in big meshes
+
+  LightPoint() = default;
+  LightPoint(const Vec3& normal, int ofPrimitive = -1) : n(normal), primitive(ofPrimitive) {}
 };
 
 /// The densities of an emitted ray.
@@ -173,11 +183,11 @@ class Light {
   /// A ray that leaves the light, distributed by emitted radiance times cosine as exactly as the light knows how;
   /// nothing where the light is black.
   virtual std::optional<LeSample> Sample_Le(const LeRandom& u) const = 0;
-  /// The densities with which `Sample_Le` gives the ray. `n` is the normal at its origin, zero where there is no
-  /// surface. For infinite lights the origin may be any point along the ray: its line counts.
-  virtual LePdf Pdf_Le(const Ray& ray, const Vec3& n) const = 0;
+  /// The densities with which `Sample_Le` gives the ray. For infinite lights the origin may be any point along the ray:
+  /// its line counts.
+  virtual LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const = 0;
   /// The random numbers with which `Sample_Le` gives the ray.
-  virtual LeRandom Invert_Le(const Ray& ray, const Vec3& n) const = 0;
+  virtual LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const = 0;
 
   /// Radiance that an infinite light sends back along a ray which left the scene; black for others.
   virtual Color Le(const Ray&) const { return Color(); }

@@ -26,9 +26,9 @@ std::optional<LeSample> PointLight::Sample_Le(const LeRandom& u) const {
   return sample;
 }
 
-LePdf PointLight::Pdf_Le(const Ray&, const Vec3&) const { return {1, kSpherePdf}; }
+LePdf PointLight::Pdf_Le(const Ray&, const LightPoint&) const { return {1, kSpherePdf}; }
 
-LeRandom PointLight::Invert_Le(const Ray& ray, const Vec3&) const {
+LeRandom PointLight::Invert_Le(const Ray& ray, const LightPoint&) const {
   LeRandom u;
   u.direction = InvertSphere(ToDouble(ray.d));
   return u;

@@ -120,12 +120,12 @@ std::optional<LeSample> SpotLight::Sample_Le(const LeRandom& u) const {
   return sample;
 }
 
-LePdf SpotLight::Pdf_Le(const Ray& ray, const Vec3&) const {
+LePdf SpotLight::Pdf_Le(const Ray& ray, const LightPoint&) const {
   const double share = profile_.Evaluate(OneMinusCos(ray.d));
   return {1, share > 0 ? share / (2 * kPiD * profile_.Integral()) : 0};
 }
 
-LeRandom SpotLight::Invert_Le(const Ray& ray, const Vec3&) const {
+LeRandom SpotLight::Invert_Le(const Ray& ray, const LightPoint&) const {
   const Vec3d w = ToDouble(ray.d);
   LeRandom u;
   u.direction = Vec2d(profile_.Invert(OneMinusCos(ray.d)), TurnOf(Dot(w, s_), Dot(w, t_)));

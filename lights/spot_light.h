@@ -58,8 +58,8 @@ class SpotLight final : public Light {
   LiRandom Invert_Li(const LightContext&, const Vec3&, const SurfaceInteraction*) const override { return {}; }
 
   std::optional<LeSample> Sample_Le(const LeRandom& u) const override;
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override;
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override;
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override;
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override;
 
   /// Intensity in the unit direction `w` away from the light.
   Color Intensity(const Vec3& w) const;

@@ -1,5 +1,6 @@
 #include "src/photons/emission_guide.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "src/base/numerics.h"
@@ -10,6 +11,8 @@ namespace {
 
 constexpr int kCells = 64;  // a side
 constexpr double kEvenShare = 0.1;
+/// Of fewer photons of use a table would be noise, and of many lights their tables too many for the memory.
+constexpr int kFewestOfUse = 64;
 
 /// The table of least variance: where a share q of the photons is of use, density goes with sqrt(q).
 class Histogram {
@@ -61,14 +64,18 @@ EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const Pilo
   struct Learned {
     Histogram position, direction;
     double emitted = 0, useful = 0;
+    int photonsOfUse = 0;
   };
   std::vector<Learned> learned(power.size());
+  for (const PilotPhoton& photon : pilot)
+    if (photon.light >= 0 && photon.weight > 0) ++learned[static_cast<size_t>(photon.light)].photonsOfUse;
   for (const PilotPhoton& photon : pilot) {
     if (photon.light < 0) continue;
     Learned& light = learned[static_cast<size_t>(photon.light)];
     light.emitted += 1;
     if (photon.weight == 0) continue;
     light.useful += photon.weight;
+    if (light.photonsOfUse < kFewestOfUse) continue;
     if (!photon.deltaPos) light.position.Add(photon.position, photon.weight);
     if (!photon.deltaDir) light.direction.Add(photon.direction, photon.weight);
   }
@@ -86,6 +93,11 @@ EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const Pilo
   byUse_ = Distribution1D(std::span<const double>(use));
   lights_.reserve(power.size());
   for (const Learned& light : learned) lights_.push_back({light.position.ToTable(), light.direction.ToTable()});
+}
+
+bool EmissionGuide::Bends(int light) const {
+  const LightTables& tables = lights_[static_cast<size_t>(light)];
+  return HasCells(tables.position) || HasCells(tables.direction);
 }
 
 EmissionGuide::Bent EmissionGuide::Bend(int light, const LeRandom& u) const {
@@ -116,6 +128,12 @@ LeRandom EmissionGuide::Unbend(int light, const LeRandom& own) const {
   if (HasCells(tables.position)) u.position = tables.position.Invert(own.position);
   if (HasCells(tables.direction)) u.direction = tables.direction.Invert(own.direction);
   return u;
+}
+
+int64_t EmissionGuide::MostMemoryBytes(int64_t lights, int64_t pilotPhotons) {
+  constexpr int64_t kTableBytes = 10 * kCells * kCells;  // with the sums over its rows
+  constexpr int64_t kLightBytes = 256;
+  return kLightBytes * lights + 2 * kTableBytes * std::min(lights, pilotPhotons / kFewestOfUse);
 }
 
 int64_t EmissionGuide::MemoryBytes() const {

@@ -94,7 +94,7 @@ EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUse
   EmissionGuide guide;
   // About one light path a pixel in all: a small picture is not worth a long pilot.
   const Vec2i& resolution = scene.Settings().resolution;
-  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, 1 << 15);
+  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, kMostPilotPhotons / 2);
   const int64_t rounds[] = {most / 2, most / 2, most};
   for (uint64_t round = 0; round < std::size(rounds); ++round) {
     const EmissionSampler emission(scene, guide);

@@ -8,6 +8,9 @@
 
 namespace dapple {
 
+/// Photons of a pilot, at most.
+inline constexpr int64_t kMostPilotPhotons = 1 << 16;
+
 /// Follows a few thousand camera paths to the surfaces that gather photons, then rounds of photons, each round guided
 /// by those before it. A photon is of use where it lands near such a point with at least one scattering event behind
 /// it. `finalGathers`: diffuse scatterings of a camera path before it gathers. The

@@ -25,15 +25,16 @@ std::optional<EmissionSample> EmissionSampler::Sample(const LeRandom& u) const {
   return sample;
 }
 
-EmissionPdf EmissionSampler::Pdf(int light, const Ray& ray, const Vec3& n) const {
+EmissionPdf EmissionSampler::Pdf(int light, const Ray& ray, const LightPoint& from) const {
   const Light& source = *scene_->Lights()[static_cast<size_t>(light)];
-  const LePdf pdf = source.Pdf_Le(ray, n);
+  const LePdf pdf = source.Pdf_Le(ray, from);
   if (guide_.IsEmpty()) return {scene_->Picker().ProbabilityByPower(light), pdf.position, pdf.direction, 1};
-  return {guide_.LightProbability(light), pdf.position, pdf.direction, guide_.Pdf(light, source.Invert_Le(ray, n))};
+  const double bend = guide_.Bends(light) ? guide_.Pdf(light, source.Invert_Le(ray, from)) : 1;
+  return {guide_.LightProbability(light), pdf.position, pdf.direction, bend};
 }
 
-LeRandom EmissionSampler::Inverse(int light, const Ray& ray, const Vec3& n) const {
-  LeRandom u = scene_->Lights()[static_cast<size_t>(light)]->Invert_Le(ray, n);
+LeRandom EmissionSampler::Inverse(int light, const Ray& ray, const LightPoint& from) const {
+  LeRandom u = scene_->Lights()[static_cast<size_t>(light)]->Invert_Le(ray, from);
   if (guide_.IsEmpty()) {
     u.part = scene_->Picker().InvertByPower(light, u.part);
     return u;

@@ -42,10 +42,10 @@ class EmissionSampler {
 
   /// `u.part` chooses the light, and what is left of it the part of the light. Nothing where no light emits.
   std::optional<EmissionSample> Sample(const LeRandom& u) const;
-  /// The densities with which `Sample` gives this ray of this light; `n` as for Light::Pdf_Le.
-  EmissionPdf Pdf(int light, const Ray& ray, const Vec3& n) const;
+  /// The densities with which `Sample` gives this ray of this light; `from` as for Light::Pdf_Le.
+  EmissionPdf Pdf(int light, const Ray& ray, const LightPoint& from) const;
   /// The random numbers with which `Sample` gives this ray of this light.
-  LeRandom Inverse(int light, const Ray& ray, const Vec3& n) const;
+  LeRandom Inverse(int light, const Ray& ray, const LightPoint& from) const;
 
   const EmissionGuide& Guide() const { return guide_; }
 

@@ -53,8 +53,8 @@ class BentEnvironment : public LightDecorator {
     sample->pdfPos = pdf.position, sample->pdfDir = pdf.direction;
     return sample;
   }
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override {
-    LePdf pdf = light_->Pdf_Le(ray, n);
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override {
+    LePdf pdf = light_->Pdf_Le(ray, from);
     if (DensityIsFaulty()) pdf.direction = light_->Pdf_Li(LightContext(Vec3(0)), Unbend(-ray.d), nullptr);
     return pdf;
   }
@@ -121,16 +121,16 @@ class FaultyEmission : public LightDecorator {
     if (pdf.direction > 0) sample->pdfDir = pdf.direction;
     return sample;
   }
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override {
-    const LePdf pdf = light_->Pdf_Le(ray, n);
-    return DensityIsFaulty() ? FaultyDensity(ray, n, pdf) : pdf;
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override {
+    const LePdf pdf = light_->Pdf_Le(ray, from);
+    return DensityIsFaulty() ? FaultyDensity(ray, from, pdf) : pdf;
   }
 
  protected:
   virtual LeRandom ChangedNumbers(const LeRandom& u) const { return u; }
   virtual void Change(const LeRandom& /*u*/, LeSample* /*sample*/) const {}
   /// `pdf`: of the light without fault.
-  virtual LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf& pdf) const = 0;
+  virtual LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf& pdf) const = 0;
 
   /// A ray of a surface, sent elsewhere.
   static void Redirect(const Vec3& d, LeSample* sample) {
@@ -149,7 +149,9 @@ class FlippedNormal final : public FaultyEmission {
     Redirect(sample->ray.d - sample->n * (2 * Dot(sample->n, sample->ray.d)), sample);
     sample->ray.o = sample->ray.o + sample->ray.d * 1e-4f;
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf&) const override { return light_->Pdf_Le(ray, -n); }
+  LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf&) const override {
+    return light_->Pdf_Le(ray, -from.n);
+  }
 };
 
 /// Directions uniform over the hemisphere instead of by the cosine.
@@ -161,8 +163,8 @@ class MissingCosine final : public FaultyEmission {
   void Change(const LeRandom& u, LeSample* sample) const override {
     Redirect(Frame::FromZ(sample->n).ToWorld(ToFloat(SampleHemisphere(u.direction))), sample);
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf& pdf) const override {
-    return {pdf.position, Dot(ray.d, n) > 0 ? kHemispherePdf : 0};
+  LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf& pdf) const override {
+    return {pdf.position, Dot(ray.d, from.n) > 0 ? kHemispherePdf : 0};
   }
 };
 
@@ -177,8 +179,8 @@ class FactorTwo final : public FaultyEmission {
     front.direction.x /= 2;
     return front;
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf& pdf) const override {
-    return {pdf.position, Dot(ray.d, n) > 0 ? 2 * pdf.direction : 0};
+  LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf& pdf) const override {
+    return {pdf.position, Dot(ray.d, from.n) > 0 ? 2 * pdf.direction : 0};
   }
 };
 
@@ -195,9 +197,9 @@ class WrongDiskArea final : public FaultyEmission {
     const Vec3 center = CenterOf(sample->ray);
     sample->ray.o = center + (sample->ray.o - center) * kShare;
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf&) const override {
+  LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf&) const override {
     const Vec3 center = CenterOf(ray);
-    const LePdf pdf = light_->Pdf_Le(Ray{center + (ray.o - center) * (1 / kShare), ray.d}, n);
+    const LePdf pdf = light_->Pdf_Le(Ray{center + (ray.o - center) * (1 / kShare), ray.d}, from.n);
     return {pdf.position / static_cast<double>(kShare * kShare), pdf.direction};
   }
 };
@@ -213,7 +215,7 @@ class DiskWithoutRoot final : public FaultyEmission {
     const double r = disk.radius * u.position.x, phi = 2 * kPiD * u.position.y;
     sample->ray.o = ToFloat(disk.center + (disk.s * std::cos(phi) + disk.t * std::sin(phi)) * r);
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3&, const LePdf& pdf) const override {
+  LePdf FaultyDensity(const Ray& ray, const LightPoint&, const LePdf& pdf) const override {
     const EmissionDisk disk = DiskAcross(-ray.d);
     const double share = Length(Cross(ToDouble(ray.o) - disk.center, ToDouble(ray.d))) / disk.radius;
     return {pdf.position / (2 * std::max(share, 1e-6)), pdf.direction};
@@ -231,7 +233,7 @@ class MissingSine final : public FaultyEmission {
     const Vec3 wi = ToFloat(Vec3d(s * std::cos(phi), s * std::sin(phi), std::cos(theta)));
     sample->ray = Ray{DiskAcross(wi).Sample(u.position), -wi};
   }
-  LePdf FaultyDensity(const Ray&, const Vec3&, const LePdf& pdf) const override {
+  LePdf FaultyDensity(const Ray&, const LightPoint&, const LePdf& pdf) const override {
     return {pdf.position, 1 / (2 * kPiD * kPiD)};
   }
 };
@@ -246,8 +248,8 @@ class ReversedRays final : public FaultyEmission {
     const Vec3 w = sample->ray.d;
     sample->ray = Ray{DiskAcross(w).Sample(u.position), -w};
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf&) const override {
-    return light_->Pdf_Le(Ray{ray.o, -ray.d}, n);
+  LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf&) const override {
+    return light_->Pdf_Le(Ray{ray.o, -ray.d}, from.n);
   }
 };
 
@@ -265,7 +267,7 @@ class ForgottenRim final : public FaultyEmission {
     const auto arriving = light_->Sample_Li(LightContext(sample->ray(1)), {});
     sample->Le = arriving ? arriving->L : Color();
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3&, const LePdf&) const override {
+  LePdf FaultyDensity(const Ray& ray, const LightPoint&, const LePdf&) const override {
     return {1, 1 + static_cast<double>(ray.d.z) <= OneMinusCosMax() ? ConePdf(OneMinusCosMax()) : 0};
   }
 };
@@ -290,8 +292,8 @@ class ChosenByNumber final : public FaultyEmission {
     own.part = (AreaBefore(chosen) + shape_->PrimitiveArea(chosen) / 2) / area_;
     return own;
   }
-  LePdf FaultyDensity(const Ray& ray, const Vec3& n, const LePdf& pdf) const override {
-    const double part = light_->Invert_Le(ray, n).part * area_;
+  LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf& pdf) const override {
+    const double part = light_->Invert_Le(ray, from).part * area_;
     int chosen = 0;
     while (chosen + 1 < shape_->PrimitiveCount() && AreaBefore(chosen + 1) <= part) ++chosen;
     return {1 / (shape_->PrimitiveCount() * shape_->PrimitiveArea(chosen)), pdf.direction};

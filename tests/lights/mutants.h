@@ -37,8 +37,8 @@ class LightDecorator : public Light {
     return light_->Invert_Li(at, wi, hit);
   }
   std::optional<LeSample> Sample_Le(const LeRandom& u) const override { return light_->Sample_Le(u); }
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override { return light_->Pdf_Le(ray, n); }
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override { return light_->Invert_Le(ray, n); }
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override { return light_->Pdf_Le(ray, from); }
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override { return light_->Invert_Le(ray, from); }
   Color Le(const Ray& ray) const override { return light_->Le(ray); }
   Color L(const SurfaceInteraction& hit, const Vec3& w) const override { return light_->L(hit, w); }
 

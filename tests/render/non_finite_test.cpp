@@ -43,8 +43,8 @@ class SickPoint final : public Light {
     if (sample && sample->ray.d.x > 0) sample->Le = Color(bad_);
     return sample;
   }
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override { return point_.Pdf_Le(ray, n); }
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override { return point_.Invert_Le(ray, n); }
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override { return point_.Pdf_Le(ray, from); }
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override { return point_.Invert_Le(ray, from); }
 
  private:
   PointLight point_{Vec3(0, 1, -3), Color(10)};
@@ -61,8 +61,8 @@ class SickSky final : public Light {
   double Pdf_Li(const LightContext&, const Vec3&, const SurfaceInteraction*) const override { return 0; }
   LiRandom Invert_Li(const LightContext&, const Vec3&, const SurfaceInteraction*) const override { return {}; }
   std::optional<LeSample> Sample_Le(const LeRandom&) const override { return std::nullopt; }
-  LePdf Pdf_Le(const Ray&, const Vec3&) const override { return {1, 1}; }
-  LeRandom Invert_Le(const Ray&, const Vec3&) const override { return {}; }
+  LePdf Pdf_Le(const Ray&, const LightPoint&) const override { return {1, 1}; }
+  LeRandom Invert_Le(const Ray&, const LightPoint&) const override { return {}; }
   Color Le(const Ray& ray) const override { return ray.d.x > 0 ? Color(kNan, 1, 1) : Color(1); }
 };
 

@@ -125,8 +125,8 @@ class BrighterLight final : public Light {
     if (sample) sample->Le *= factor_;
     return sample;
   }
-  LePdf Pdf_Le(const Ray& ray, const Vec3& n) const override { return light_->Pdf_Le(ray, n); }
-  LeRandom Invert_Le(const Ray& ray, const Vec3& n) const override { return light_->Invert_Le(ray, n); }
+  LePdf Pdf_Le(const Ray& ray, const LightPoint& from) const override { return light_->Pdf_Le(ray, from); }
+  LeRandom Invert_Le(const Ray& ray, const LightPoint& from) const override { return light_->Invert_Le(ray, from); }
   Color Le(const Ray& ray) const override { return light_->Le(ray) * factor_; }
   Color L(const SurfaceInteraction& hit, const Vec3& w) const override { return light_->L(hit, w) * factor_; }
 
