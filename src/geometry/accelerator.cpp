@@ -326,8 +326,10 @@ void Accelerator::State::CheckInstanceScales() const {
       double extent = std::abs(inverse.At(row, 3));
       for (int column = 0; column < 3; ++column) extent += std::abs(inverse.At(row, column)) * reach;
       if (!(extent < kMaxReach))
-        throw Error(fmt::format("instance {}: its transform flattens too much; expected scales above {:.1g}", i,
-                                reach / kMaxReach));
+        throw Error(
+            instances[i].location,
+            fmt::format("the instance is too flat in a scene that reaches {:.1g} far; expected scales above {:.1g}",
+                        reach, reach / kMaxReach));
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "src/base/error.h"
 #include "src/geometry/shape.h"
 
 namespace dapple {
@@ -35,12 +36,13 @@ struct GeometryGroup {
 struct GeometryInstance {
   int group = 0;
   Transform groupToRender;
+  FileLocation location = {};  ///< for messages
 };
 
 class Accelerator {
  public:
   /// `shapes` that belong to no group stand in the scene themselves; others only through `instances`.
-  /// Throws `Error` where Embree fails (memory) or the geometry is not finite.
+  /// Throws `Error` where Embree fails (memory), the geometry is not finite, or an instance is too flat to be traced.
   Accelerator(std::vector<GeometryEntry> shapes, std::vector<GeometryGroup> groups,
               std::vector<GeometryInstance> instances);
   ~Accelerator();

@@ -156,7 +156,7 @@ void Assembler::AddInstance(const InstanceDescription& instance) {
   if (!group) group = BuildGroup(context_.description.objects[static_cast<size_t>(instance.object)]);
   if (group->index < 0) return;
   const Transform groupToRender = context_.renderFromWorld * instance.worldFromInstance * group->objectFromGroup;
-  parts_->instances.push_back({group->index, groupToRender});
+  parts_->instances.push_back({group->index, groupToRender, instance.location});
 }
 
 }  // namespace
