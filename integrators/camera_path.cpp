@@ -29,7 +29,7 @@ LightContext ContextOf(const Scene& scene, const SurfaceInteraction& hit, const 
   at.bsdfDrawsToo = direct.technique == DirectTechnique::Mis;
   if (bsdf.IsPurelySpecular()) return at;
   for (const Light* light : scene.LightsThatWantReceivers())
-    if (auto table = light->PrepareReceiver(at, bsdf, hit.wo)) at.tables.push_back(std::move(table));
+    if (auto table = light->PrepareReceiver(bsdf, hit.wo)) at.tables.push_back(std::move(table));
   return at;
 }
 

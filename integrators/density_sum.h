@@ -42,8 +42,8 @@ class DensitySum {
     return IsOnSameSurface(site_, at.position, at.distanceSquared, at.normal, at.wi);
   }
 
-  /// Adds the value of a photon that is taken. Photons are dense by the `cosine` of their direction and the geometric
-  /// normal, so it is divided out.
+  /// Adds the `value` of a photon that is taken: its flux times the BSDF with the shading normal's cosine, W / sr.
+  /// Photons are dense by the `cosine` (> 0) of their direction and the geometric normal, so it is divided out.
   void Add(const PhotonPlace& at, const Color& value, float cosine, float weight = 1) {
     sum_ += value * (kernel_(at.distanceSquared) / cosine * weight);
     if (at.distanceSquared < narrowSquared_ &&
@@ -51,7 +51,7 @@ class DensitySum {
       narrowSum_ += value * (narrowKernel_(at.distanceSquared) / cosine * weight);
   }
 
-  /// What was added, divided by how much of the disk the surface fills (coverage.h).
+  /// Radiance: what was added, divided by how much of the disk the surface fills (coverage.h).
   PathEstimate Estimate(const Scene& scene, uint64_t seed, int64_t* rays) const {
     const auto covered = [&](const Color& sum, const GatherSite& site) {
       return sum.IsBlack() ? sum : sum * InverseCoverage(scene, hit_, site, shape_, seed, rays);

@@ -21,7 +21,7 @@ HybridIntegrator::HybridIntegrator(const IntegratorOptions& options) : options_(
 void HybridIntegrator::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
-  plan_.emplace(scene, options_, 0, seed);
+  plan_.emplace(scene, options_, PhotonUse{.forecastsPhotons = true}, seed);
 }
 
 MergeSite HybridIntegrator::SiteAt(const Vec3& p, const Merging& merging) const {

@@ -27,6 +27,9 @@ class HybridIntegrator final : public Integrator {
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
   PreparationUse Preparation() const override { return plan_->Use(); }
+  PassForecast Forecast(const Scene& scene, uint64_t seed) const override {
+    return ForecastPhotonPass(scene, options_, 0, seed);
+  }
   bool EstimatesDensity() const override { return true; }
   int DefaultPasses() const override { return 64; }
 

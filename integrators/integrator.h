@@ -45,6 +45,14 @@ struct PreparationUse {
   int64_t pilotPaths = 0;  ///< light paths that they began
 };
 
+/// About what a pass does and takes, told before anything is prepared.
+struct PassForecast {
+  int cameraSamples = 1;   ///< camera paths a pixel
+  int64_t lightPaths = 0;  ///< without what a pilot would learn: at most a factor of two off or so
+  bool storesPhotons = false;
+  int64_t pilotBytes = 0;  ///< that preparation takes at most
+};
+
 /// Whose directions find direct light where a camera path scatters. Light of delta lights is sampled in any case.
 enum class DirectTechnique {
   Mis,    ///< the lights' and the BSDF's, joined by multiple importance sampling
@@ -93,6 +101,8 @@ class Integrator {
   virtual void Prepare(const Scene& scene, uint64_t seed) = 0;
   /// What that took; once prepared.
   virtual PreparationUse Preparation() const { return {}; }
+  /// Needs no preparation.
+  virtual PassForecast Forecast(const Scene&, uint64_t /*seed*/) const { return {}; }
   /// Adds pass number `pass` (from 0) to the film. May be called in any order and for any set of passes.
   virtual PassStats RenderPass(int pass, Film& film) const = 0;
   /// Whether the picture has a bias, which shrinks with the passes, because densities are estimated: then it adds to

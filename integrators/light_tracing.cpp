@@ -8,9 +8,6 @@
 namespace dapple {
 
 void LightTracingIntegrator::Prepare(const Scene& scene, uint64_t seed) {
-  if (!scene.GetCamera().CanConnect())
-    throw Error(
-        "integrator light_tracing cannot join light paths to this camera; use a perspective camera, path or sppm");
   scene_ = &scene;
   seed_ = seed;
   emission_.emplace(
@@ -21,6 +18,13 @@ void LightTracingIntegrator::Prepare(const Scene& scene, uint64_t seed) {
 PreparationUse LightTracingIntegrator::Preparation() const {
   const EmissionGuide& guide = emission_->Guide();
   return {TableUse::Of(guide.MemoryBytes()), guide.PilotPhotons()};
+}
+
+PassForecast LightTracingIntegrator::Forecast(const Scene& scene, uint64_t) const {
+  PassForecast forecast;
+  forecast.lightPaths = LightPathsOfPass(scene, options_);
+  if (options_.guideEmission) forecast.pilotBytes = EmissionPilotBytes(scene);
+  return forecast;
 }
 
 PassStats LightTracingIntegrator::RenderPass(int pass, Film& film) const {
@@ -74,8 +78,9 @@ void LightTracingIntegrator::Join(const LightVertex& vertex, const Vec2d& uLens,
   if (vertex.bsdf.IsPurelySpecular()) return;
   const std::optional<WiSample> join = scene_->GetCamera().Sample_Wi(hit.p, uLens);
   if (!join) return;
-  const Imath::Box2d reach = film.SplatBounds();
-  if (!reach.intersects(Vec2d(join->film.x, join->film.y))) return;
+  std::array<Vec2, Camera::kMostRepeats + 1> places;
+  const int count = FilmPlaces(film, join->film, &places);
+  if (count == 0) return;
   const auto scatter = [&] { return vertex.bsdf.Eval(hit.wo, join->wi, TransportMode::Importance); };
   const Color value = Finite(vertex.flux * scatter() * (weight * join->We / static_cast<float>(join->pdf)),
                              &stats.nonFinite, [&] { return SourceAt(*scene_, hit, scatter); });
@@ -83,7 +88,21 @@ void LightTracingIntegrator::Join(const LightVertex& vertex, const Vec2d& uLens,
   ++stats.shadowRays;
   if (!scene_->Unoccluded(SpawnRayTo(hit, join->lens, 0, Vec3(0)))) return;
   ++stats.splats;
-  film.AddSplat(join->film, value, pass);
+  for (int i = 0; i < count; ++i) film.AddSplat(places[static_cast<size_t>(i)], value, pass);
+}
+
+int LightTracingIntegrator::FilmPlaces(const Film& film, const Vec2& position,
+                                       std::array<Vec2, Camera::kMostRepeats + 1>* places) const {
+  const Imath::Box2d reach = film.SplatBounds();
+  int count = 0;
+  const auto keep = [&](const Vec2& place) {
+    if (reach.intersects(Vec2d(place.x, place.y))) (*places)[static_cast<size_t>(count++)] = place;
+  };
+  keep(position);
+  std::array<Vec2, Camera::kMostRepeats> repeats;
+  const int repeated = scene_->GetCamera().FilmRepeats(position, &repeats);
+  for (int i = 0; i < repeated; ++i) keep(repeats[static_cast<size_t>(i)]);
+  return count;
 }
 
 }  // namespace dapple

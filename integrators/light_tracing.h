@@ -14,15 +14,17 @@ class LightTracingIntegrator final : public Integrator {
   explicit LightTracingIntegrator(const IntegratorOptions& options) : options_(options) {}
 
   std::string_view Name() const override { return "light_tracing"; }
-  /// Throws `Error` where the camera cannot be joined to a point.
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
   PreparationUse Preparation() const override;
+  PassForecast Forecast(const Scene& scene, uint64_t seed) const override;
   int DefaultPasses() const override { return 64; }
 
  private:
   PassStats RenderEmitters(int pass, Film& film) const;
   PassStats RenderLightPaths(int pass, Film& film) const;
+  /// Where light that lands on `position` reaches the film's pixels; returns how many.
+  int FilmPlaces(const Film& film, const Vec2& position, std::array<Vec2, Camera::kMostRepeats + 1>* places) const;
   void Join(const LightVertex& vertex, const Vec2d& uLens, float weight, int pass, Film& film, PassStats& stats) const;
 
   IntegratorOptions options_;

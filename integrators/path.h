@@ -15,6 +15,9 @@ class PathIntegrator final : public Integrator {
 
   std::string_view Name() const override { return "path"; }
   void Prepare(const Scene& scene, uint64_t seed) override;
+  PassForecast Forecast(const Scene&, uint64_t) const override {
+    return {.cameraSamples = options_.cameraSamples.value_or(1)};
+  }
   PassStats RenderPass(int pass, Film& film) const override;
   PreparationUse Preparation() const override { return {samples_.Table(), 0}; }
   int DefaultPasses() const override { return 64; }

@@ -2,25 +2,16 @@
 
 #include "integrators/density_sum.h"
 #include "integrators/guided_bsdf.h"
+#include "src/photons/camera_pilot.h"
 #include "src/photons/radius_schedule.h"
 #include "src/sampling/mis.h"
 
 namespace dapple {
 
-namespace {
-
-// Surfaces that look in few enough directions for the camera path to go on through them.
-bool IsGlossy(const Bsdf& bsdf) {
-  constexpr float kMaxRoughness = 0.25f;
-  return !bsdf.Flags().HasDiffuse() && bsdf.MinRoughness() < kMaxRoughness;
-}
-
-}  // namespace
-
 void PhotonGatherer::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;
   seed_ = seed;
-  plan_.emplace(scene, options_, rules_.finalGathers, seed);
+  plan_.emplace(scene, options_, PhotonUse{.finalGathers = rules_.finalGathers}, seed);
   if (rules_.hasCausticMap && plan_->isNeeded && scene.Facts().MayHaveCaustics())
     causticRadius_ = CausticRadius(*plan_, scene, options_, seed);
   // One scattering before the photon lands, one where it is found, and the one whose directions are guided.

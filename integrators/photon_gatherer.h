@@ -25,6 +25,9 @@ class PhotonGatherer : public Integrator {
   void Prepare(const Scene& scene, uint64_t seed) override;
   PassStats RenderPass(int pass, Film& film) const override;
   PreparationUse Preparation() const override;
+  PassForecast Forecast(const Scene& scene, uint64_t seed) const override {
+    return ForecastPhotonPass(scene, options_, rules_.finalGathers, seed);
+  }
   bool EstimatesDensity() const override { return true; }
   int DefaultPasses() const override { return 64; }
 

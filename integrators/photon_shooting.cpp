@@ -33,9 +33,27 @@ int BalancedCameraSamples(const Scene& scene, int64_t paths, const PathWork& wor
   return 1 << std::lround(std::log2(samples));
 }
 
+struct PassSize {
+  int64_t lightPaths = 0;
+  int cameraSamples = 1;
+};
+
+PassSize SizeOfPass(const Scene& scene, const IntegratorOptions& options, const PathWork& work) {
+  if (!options.photonsPerPass) return {BalancedLightPaths(scene, work), 1};
+  return {*options.photonsPerPass, BalancedCameraSamples(scene, *options.photonsPerPass, work)};
+}
+
+/// There must be one scattering before a photon lands, and one where it is gathered.
+bool CanGather(const Scene& scene, const IntegratorOptions& options) {
+  return scene.Facts().CanUsePhotons() && options.maxDepth >= 2;
+}
+
 GatherRadius RadiusOf(const Scene& scene, const EmissionSampler& emission, int64_t paths,
-                      const IntegratorOptions& options, bool causticsOnly, uint64_t seed) {
-  return {scene, emission, paths, {options.maxDepth, options.radiusScale, causticsOnly, options.radius, seed}};
+                      const IntegratorOptions& options, bool causticsOnly, bool forecastsPhotons, uint64_t seed) {
+  return {scene,
+          emission,
+          paths,
+          {options.maxDepth, options.radiusScale, causticsOnly, options.radius, forecastsPhotons, seed}};
 }
 
 }  // namespace
@@ -50,24 +68,31 @@ EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int 
   return LearnEmissionGuide(scene, options.maxDepth, finalGathers, seed);
 }
 
-int64_t EstimateLightPaths(const Scene& scene, const IntegratorOptions& options, uint64_t seed) {
-  if (options.photonsPerPass) return *options.photonsPerPass;
-  return BalancedLightPaths(scene, EstimateWork(scene, EmissionSampler(scene), options.maxDepth, 0, seed));
+PassForecast ForecastPhotonPass(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed) {
+  // Light paths of pilots are of fixed number. Measured in a closed room of albedo 0.95, where they are long: 33 MB,
+  // and with the pilot of a final gather 60 MB.
+  constexpr int64_t kPilotBytes = 36'000'000, kPilotBytesOfFinalGather = 66'000'000;
+  PassForecast forecast;
+  if (!CanGather(scene, options)) return forecast;
+  const PathWork work = EstimateWork(scene, EmissionSampler(scene), options.maxDepth, finalGathers, seed);
+  const PassSize size = SizeOfPass(scene, options, work);
+  forecast.lightPaths = size.lightPaths;
+  forecast.cameraSamples = size.cameraSamples;
+  forecast.storesPhotons = true;
+  forecast.pilotBytes = finalGathers > 0 ? kPilotBytesOfFinalGather : kPilotBytes;
+  if (options.guideEmission) forecast.pilotBytes += EmissionPilotBytes(scene);
+  return forecast;
 }
 
-PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed)
-    // One scattering before the photon lands, one where it is gathered.
-    : isNeeded(scene.Facts().CanUsePhotons() && options.maxDepth >= 2),
-      emission(scene, isNeeded ? GuideOf(scene, options, finalGathers, seed) : EmissionGuide()) {
+PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, const PhotonUse& use, uint64_t seed)
+    : isNeeded(CanGather(scene, options)),
+      emission(scene, isNeeded ? GuideOf(scene, options, use.finalGathers, seed) : EmissionGuide()) {
   if (!isNeeded) return;
-  const PathWork work = EstimateWork(scene, emission, options.maxDepth, finalGathers, seed);
-  if (options.photonsPerPass) {
-    paths = *options.photonsPerPass;
-    cameraSamples = BalancedCameraSamples(scene, paths, work);
-  } else {
-    paths = BalancedLightPaths(scene, work);
-  }
-  radius = RadiusOf(scene, emission, paths, options, false, seed);
+  const PathWork work = EstimateWork(scene, emission, options.maxDepth, use.finalGathers, seed);
+  const PassSize size = SizeOfPass(scene, options, work);
+  paths = size.lightPaths;
+  cameraSamples = size.cameraSamples;
+  radius = RadiusOf(scene, emission, paths, options, false, use.forecastsPhotons, seed);
   pilotPaths = emission.Guide().PilotPhotons() + work.lightPaths + radius.PilotPaths();
 }
 
@@ -78,7 +103,7 @@ PreparationUse PhotonPlan::Use() const {
 
 GatherRadius CausticRadius(const PhotonPlan& plan, const Scene& scene, const IntegratorOptions& options,
                            uint64_t seed) {
-  return RadiusOf(scene, plan.emission, plan.paths, options, true, seed);
+  return RadiusOf(scene, plan.emission, plan.paths, options, true, false, seed);
 }
 
 }  // namespace dapple

@@ -18,16 +18,22 @@ int64_t LightPathsOfPass(const Scene& scene, const IntegratorOptions& options);
 /// What the pilot of emission has learned or learns now, as the options say; `finalGathers` as below.
 EmissionGuide GuideOf(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
 
-/// About as many light paths as `PhotonPlan` gives a pass, found without a guide: at most a factor of two off or so.
-int64_t EstimateLightPaths(const Scene& scene, const IntegratorOptions& options, uint64_t seed);
+/// About what `PhotonPlan` gives a pass.
+PassForecast ForecastPhotonPass(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
+
+/// What an integrator does with the photons of its passes.
+struct PhotonUse {
+  int finalGathers = 0;           ///< diffuse scatterings of a camera path before it gathers
+  bool forecastsPhotons = false;  ///< it goes by how many a gather may expect
+};
 
 /// How photons are emitted, how many, within what radius they are gathered, and by how many camera paths.
 struct PhotonPlan {
-  /// Learned by pilots whose length follows, as all else, from the arguments alone. `finalGathers`: diffuse scatterings
-  /// of a camera path before it gathers. Where the options do not say how many light paths a pass has, it spends as
-  /// much on them as on one camera path a pixel, within a quarter and four times as many paths as pixels and 2^22 at
-  /// most; where they do, there are as many camera paths as cost as much, at most 16 a pixel.
-  PhotonPlan(const Scene& scene, const IntegratorOptions& options, int finalGathers, uint64_t seed);
+  /// Learned by pilots whose length follows, as all else, from the arguments alone. Where the options do not say how
+  /// many light paths a pass has, it spends as much on them as on one camera path a pixel, within a quarter and four
+  /// times as many paths as pixels and 2^22 at most; where they do, there are as many camera paths as cost as much, at
+  /// most 16 a pixel.
+  PhotonPlan(const Scene& scene, const IntegratorOptions& options, const PhotonUse& use, uint64_t seed);
 
   PreparationUse Use() const;
 

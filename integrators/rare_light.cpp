@@ -67,7 +67,7 @@ void FindSurface(const Scene& scene, const CameraRay& camera, float pixels, Samp
   constexpr int kMostBounces = 16;
   Ray ray = camera.ray;
   float distance = 0;
-  for (int bounce = 1; bounce <= kMostBounces; ++bounce) {
+  for (int bounce = 1; bounce <= kMostBounces;) {
     const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
     if (!hit) return;
     distance += hit->t;
@@ -87,7 +87,7 @@ void FindSurface(const Scene& scene, const CameraRay& camera, float pixels, Samp
       place->mergeArea = 0.75 * kPiD * Sqr(GatherRadius::kMinPixels * static_cast<double>(width));
       return;
     }
-    sampler.StartBlock(bounce);
+    sampler.StartBlock(bounce++);
     const double uLobe = sampler.Get1D();
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
     if (!next) return;
@@ -183,7 +183,7 @@ std::vector<Arrivals> ShootLight(const Scene& scene, const IntegratorOptions& op
                                  const std::vector<Place>& places, const PlaceMap& map, double darkest) {
   constexpr uint64_t kShooting = 5;
   const EmissionSampler emission(scene, GuideOf(scene, options, 0, seed));
-  const auto lightPaths = static_cast<double>(EstimateLightPaths(scene, options, seed));
+  const auto lightPaths = static_cast<double>(ForecastPhotonPass(scene, options, 0, seed).lightPaths);
   const auto noMerging = [](const Vec3&) { return MergeSite(); };
   using Chunk = std::vector<Arrivals>;
   const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(

@@ -62,8 +62,7 @@ class EnvironmentLight final : public Light {
     return map_.Tables() + disks_.Table() + (strategy_ ? strategy_->Tables() : TableUse());
   }
   bool WantsReceiver() const override { return strategy_ && strategy_->WantsReceiver(); }
-  std::shared_ptr<const ReceiverTable> PrepareReceiver(const LightContext&, const Bsdf& bsdf,
-                                                       const Vec3& wo) const override {
+  std::shared_ptr<const ReceiverTable> PrepareReceiver(const Bsdf& bsdf, const Vec3& wo) const override {
     return strategy_ ? strategy_->PrepareReceiver(bsdf, wo) : nullptr;
   }
 

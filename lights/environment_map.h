@@ -91,6 +91,7 @@ class EnvironmentMap {
   EnvironmentPlace PlaceOf(const Vec3d& w) const;
   /// The unit direction of the place `s` in [0, 1]^2 of a cell.
   Vec3d DirectionOf(const Vec2i& cell, const Vec2d& s) const;
+  /// In steradians.
   double CellSolidAngle(const Vec2i& cell) const;
   /// Integrals over the cells (solid angle) of the importance less `threshold`, 0 where negative; row by row.
   std::vector<double> CellWeights(double threshold) const;

@@ -106,14 +106,14 @@ struct LePdf {
   double direction = 0;  ///< as LeSample::pdfDir
 };
 
-/// The random numbers of an emitted ray: which part of the light, where on it, which way.
+/// The random numbers of an emitted ray, each in [0, 1): which part of the light, where on it, which way.
 struct LeRandom {
   double part = 0;
   Vec2d position{0, 0};
   Vec2d direction{0, 0};
 };
 
-/// The random numbers of a direction toward the light: which part of it, and where.
+/// The random numbers of a direction toward the light, each in [0, 1): which part of it, and where.
 struct LiRandom {
   double part = 0;
   Vec2d direction{0, 0};
@@ -159,10 +159,9 @@ class Light {
 
   /// True where `Sample_Li` would rather know how the receiver scatters: then `PrepareReceiver` is to be called before.
   virtual bool WantsReceiver() const { return false; }
-  /// The table that belongs into `at.tables` where light that comes to `at` is scattered toward the unit vector `wo` by
-  /// `bsdf`; or null. `Sample_Li`, `Pdf_Li` and `Invert_Li` speak of the same density only with the same tables.
-  virtual std::shared_ptr<const ReceiverTable> PrepareReceiver(const LightContext& /*at*/, const Bsdf& /*bsdf*/,
-                                                               const Vec3& /*wo*/) const {
+  /// The table that belongs into `LightContext::tables` where light is scattered toward the unit vector `wo` by `bsdf`;
+  /// or null. `Sample_Li`, `Pdf_Li` and `Invert_Li` speak of the same density only with the same tables.
+  virtual std::shared_ptr<const ReceiverTable> PrepareReceiver(const Bsdf& /*bsdf*/, const Vec3& /*wo*/) const {
     return nullptr;
   }
   /// The tables that it has built to be sampled.

@@ -1,4 +1,5 @@
-// Which light: a choice among all of a scene's lights, by inverse CDF so that near random numbers give near lights.
+// Which light: a choice among all of a scene's lights, by inverse CDF, in the order of the file: stratified random
+// numbers give each light its share.
 #pragma once
 
 #include <memory>

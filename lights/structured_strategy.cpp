@@ -176,7 +176,6 @@ StructuredStrategy::StructuredStrategy(const EnvironmentSpace& space) : space_(s
   Blocks blocks = MakeBlocks(space.map, weights, level_);
   size_ = blocks.size;
   const std::vector<double> probabilities = MakeStrata(&blocks);
-  strata_ = static_cast<int>(probabilities.size());
 
   std::vector<double> lights(probabilities.size());
   std::vector<Vec2i> corners(probabilities.size(), Vec2i(std::numeric_limits<int>::max()));

@@ -28,8 +28,6 @@ class StructuredStrategy final : public EnvironmentStrategy {
                         static_cast<int64_t>(ranks_.size() * sizeof(int) + blocks_.size() * sizeof(Vec2i)));
   }
 
-  int StratumCount() const { return strata_; }
-
  private:
   size_t BlockIndex(const Vec2i& cell) const {
     return static_cast<size_t>(cell.y >> level_) * static_cast<size_t>(size_.x) + static_cast<size_t>(cell.x >> level_);
@@ -42,7 +40,6 @@ class StructuredStrategy final : public EnvironmentStrategy {
   std::vector<int> ranks_;  // of the blocks, in the order in which they are drawn
   std::vector<Vec2i> blocks_;
   Distribution1D byRank_;
-  int strata_ = 0;
 };
 
 }  // namespace dapple

@@ -23,6 +23,7 @@ struct QuarterSample {
 /// A quarter of probability in proportion to `weights` (not negative, not all zero); `*u` is stretched from its share
 /// to [0, 1)^2.
 QuarterSample SampleQuarter(const double (&weights)[4], Vec2d* u);
+/// The discrete probability with which `SampleQuarter` gives that quarter.
 double QuarterProbability(const double (&weights)[4], int quarter);
 /// The random numbers with which `SampleQuarter` gives that quarter and leaves `u`.
 Vec2d InvertQuarter(const double (&weights)[4], int quarter, const Vec2d& u);

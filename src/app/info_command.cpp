@@ -81,29 +81,22 @@ void PrintPlan(const Scene& scene, const RenderPlan& plan) {
                                  FormatNumberOf(plan.options.maxDepth, "scattering event", "scattering events")));
 }
 
-bool TracesPhotons(const RenderPlan& plan) { return plan.choice.name != "path"; }
-
-void PrintNeeds(const Scene& scene, const RenderPlan& plan) {
-  const RenderSettings& settings = scene.Settings();
-  const auto pixels = static_cast<double>(settings.crop.Area());
-  const int samples = plan.choice.name == "path" ? plan.options.cameraSamples.value_or(1) : 1;
-  std::string work = fmt::format("a pass has {} camera paths", FormatCount(samples * pixels));
-  if (TracesPhotons(plan)) {
-    const int64_t paths = plan.choice.name == "light_tracing"
-                              ? LightPathsOfPass(scene, plan.options)
-                              : EstimateLightPaths(scene, plan.options, static_cast<uint64_t>(int64_t{plan.seed}));
-    work += fmt::format(" and {} light paths", FormatCount(static_cast<double>(paths)));
-  }
+/// `loadedBytes`: the most that loading the scene took.
+void PrintNeeds(const Scene& scene, const PassForecast& forecast, int64_t loadedBytes) {
+  const auto pixels = static_cast<double>(scene.Settings().crop.Area());
+  std::string work = fmt::format("a pass has {} camera paths", FormatCount(forecast.cameraSamples * pixels));
+  if (forecast.lightPaths > 0)
+    work += fmt::format(" and about {} light paths", FormatCount(static_cast<double>(forecast.lightPaths)));
   PrintLine("needs", work);
   constexpr double kFilmBytesPerPixel = 2 * Color::kComponents * sizeof(FixedPoint);  // two halves, see film.h
   PrintLine("", fmt::format("{} for the film; the scene, loaded, took {}", FormatBytes(kFilmBytesPerPixel * pixels),
-                            FormatBytes(static_cast<double>(PeakMemoryBytes()))));
+                            FormatBytes(static_cast<double>(loadedBytes))));
 }
 
-void PrintSkips(const Scene& scene, const RenderPlan& plan) {
+void PrintSkips(const Scene& scene, const PassForecast& forecast) {
   const SceneFacts& facts = scene.Facts();
   std::vector<std::string> skips;
-  if (!TracesPhotons(plan))
+  if (forecast.lightPaths == 0)
     skips.emplace_back("photons and photon maps: the algorithm follows paths from the camera only");
   if (facts.blackLights > 0) {
     skips.push_back(fmt::format("{} that emit nothing", FormatNumberOf(facts.blackLights, "light", "lights")));
@@ -119,13 +112,15 @@ int RunInfo(const SceneOptions& options) {
   const ThreadLimit threads(options.threads);
   Diagnostics diagnostics(Tell);
   const LoadedScene loaded = Load(options, diagnostics);
+  const int64_t loadedBytes = PeakMemoryBytes();
   const RenderPlan plan = MakePlan(*loaded.scene, options, diagnostics);
+  const PassForecast forecast = plan.integrator->Forecast(*loaded.scene, static_cast<uint64_t>(int64_t{plan.seed}));
   PrintLine("scene", options.scene);
   PrintLine("format", fmt::format("pbrt version {}: {}", loaded.version, loaded.versionReason));
   PrintContents(*loaded.scene);
   PrintPlan(*loaded.scene, plan);
-  PrintNeeds(*loaded.scene, plan);
-  PrintSkips(*loaded.scene, plan);
+  PrintNeeds(*loaded.scene, forecast, loadedBytes);
+  PrintSkips(*loaded.scene, forecast);
   return kExitSuccess;
 }
 

@@ -127,7 +127,7 @@ void CheckMemory(const RenderOptions& options, const Scene& scene, const RenderP
   if (!options.memoryLimit) return;
   const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
   const MemoryNeeds needs =
-      EstimateMemory(scene, options.aovs, plan.choice.name, plan.options, seed, TracksBlur(options, plan));
+      EstimateMemory(scene, options.aovs, *plan.integrator, plan.options, seed, TracksBlur(options, plan));
   RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs);
 }
 

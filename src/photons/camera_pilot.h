@@ -9,17 +9,22 @@
 
 namespace dapple {
 
-/// Walks a camera path through surfaces that scatter into few directions and through `finalGathers` diffuse ones, and
-/// calls `visit(const SurfaceInteraction&, const Bsdf&, float distance)`, with the length of the path so far, at each
-/// that is neither black nor purely specular. Returns the number of segments traced. Uses block n of the sampler at its
-/// n-th surface.
+/// Surfaces that look in few enough directions for camera paths to go on through them, as through mirrors.
+inline bool IsGlossy(const Bsdf& bsdf) {
+  constexpr float kMaxRoughness = 0.25f;  // GGX alpha
+  return !bsdf.Flags().HasDiffuse() && bsdf.MinRoughness() < kMaxRoughness;
+}
+
+/// Walks a camera path through specular and glossy surfaces and through `finalGathers` others, and calls `visit(const
+/// SurfaceInteraction&, const Bsdf&, float distance)`, with the length of the path so far, at each that is neither
+/// black nor purely specular. Returns the number of segments traced. Uses block n of the sampler at its n-th surface.
 template <typename Visitor>
 int FollowCameraPath(const Scene& scene, const CameraRay& camera, int finalGathers, Sampler& sampler, Visitor&& visit) {
   constexpr int kMaxBounces = 8;
   Ray ray = camera.ray;
   float distance = 0;
   int segments = 0;
-  for (int bounce = 1; bounce <= kMaxBounces; ++bounce) {
+  for (int bounce = 1; bounce <= kMaxBounces;) {
     ++segments;
     const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
     if (!hit) break;
@@ -30,9 +35,12 @@ int FollowCameraPath(const Scene& scene, const CameraRay& camera, int finalGathe
       continue;
     }
     const Bsdf bsdf = material->GetBsdf(*hit);
-    if (!bsdf.IsPurelySpecular() && !bsdf.IsBlack()) visit(*hit, bsdf, distance);
-    if (bsdf.Flags().HasDiffuse() && finalGathers-- == 0) break;
-    sampler.StartBlock(bounce);
+    if (bsdf.IsBlack()) break;
+    if (!bsdf.IsPurelySpecular()) {
+      visit(*hit, bsdf, distance);
+      if (!IsGlossy(bsdf) && finalGathers-- == 0) break;
+    }
+    sampler.StartBlock(bounce++);
     const double uLobe = sampler.Get1D();
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
     if (!next) break;

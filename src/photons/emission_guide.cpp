@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kCells = 64;  // a side
 constexpr double kEvenShare = 0.1;
-/// Of fewer photons of use a table would be noise, and of many lights their tables too many for the memory.
-constexpr int kFewestOfUse = 64;
+/// So many lights have tables: those of which the pilot found the most photons of use.
+constexpr size_t kMostGuided = 512;
 
 /// The table of least variance: where a share q of the photons is of use, density goes with sqrt(q).
 class Histogram {
@@ -55,6 +55,20 @@ class Histogram {
   std::vector<double> sums_;
 };
 
+std::vector<size_t> GuidedLights(size_t lights, std::span<const PilotPhoton> pilot) {
+  std::vector<int> ofUse(lights);
+  for (const PilotPhoton& photon : pilot)
+    if (photon.light >= 0 && photon.weight > 0) ++ofUse[static_cast<size_t>(photon.light)];
+  std::vector<size_t> guided;
+  for (size_t i = 0; i < lights; ++i)
+    if (ofUse[i] > 0) guided.push_back(i);
+  if (guided.size() <= kMostGuided) return guided;
+  std::nth_element(guided.begin(), guided.begin() + kMostGuided, guided.end(),
+                   [&](size_t a, size_t b) { return ofUse[a] != ofUse[b] ? ofUse[a] > ofUse[b] : a < b; });
+  guided.resize(kMostGuided);
+  return guided;
+}
+
 bool HasCells(const Distribution2D& table) { return table.Height() > 0; }
 
 }  // namespace
@@ -64,18 +78,17 @@ EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const Pilo
   struct Learned {
     Histogram position, direction;
     double emitted = 0, useful = 0;
-    int photonsOfUse = 0;
+    bool isGuided = false;
   };
   std::vector<Learned> learned(power.size());
-  for (const PilotPhoton& photon : pilot)
-    if (photon.light >= 0 && photon.weight > 0) ++learned[static_cast<size_t>(photon.light)].photonsOfUse;
+  for (const size_t light : GuidedLights(power.size(), pilot)) learned[light].isGuided = true;
   for (const PilotPhoton& photon : pilot) {
     if (photon.light < 0) continue;
     Learned& light = learned[static_cast<size_t>(photon.light)];
     light.emitted += 1;
     if (photon.weight == 0) continue;
     light.useful += photon.weight;
-    if (light.photonsOfUse < kFewestOfUse) continue;
+    if (!light.isGuided) continue;
     if (!photon.deltaPos) light.position.Add(photon.position, photon.weight);
     if (!photon.deltaDir) light.direction.Add(photon.direction, photon.weight);
   }
@@ -130,10 +143,10 @@ LeRandom EmissionGuide::Unbend(int light, const LeRandom& own) const {
   return u;
 }
 
-int64_t EmissionGuide::MostMemoryBytes(int64_t lights, int64_t pilotPhotons) {
-  constexpr int64_t kTableBytes = 10 * kCells * kCells;  // with the sums over its rows
+int64_t EmissionGuide::MostMemoryBytes(int64_t lights) {
+  constexpr int64_t kTableBytes = 12 * kCells * kCells;  // with the sums over its rows
   constexpr int64_t kLightBytes = 256;
-  return kLightBytes * lights + 2 * kTableBytes * std::min(lights, pilotPhotons / kFewestOfUse);
+  return kLightBytes * lights + 2 * kTableBytes * std::min(lights, int64_t{kMostGuided});
 }
 
 int64_t EmissionGuide::MemoryBytes() const {

@@ -1,8 +1,8 @@
 // Guided emission: what a pilot learned of which emitted photons come to something, as a bend of the unit cube of
 // random numbers from which all emission is drawn.
 //
-// Each light has a share of the photons and, where the pilot found enough of them to be of use, two tables: over the
-// two random numbers of its origins and over those of its directions. A tenth of each table is spread evenly, a tenth
+// Each light has a share of the photons and, unless hundreds of others are of more use, two tables: over the two random
+// numbers of its origins and over those of its directions. A tenth of each table is spread evenly, a tenth
 // of the lights' shares goes by power, and a tenth of a light's photons ignore its tables, so that what the pilot
 // missed is still found: no photon weighs more than 100 times what it would without a guide, ten of them for its light.
 // The bend happens before the light turns the cube into a ray, so the density of what is drawn is exact whatever was
@@ -56,8 +56,8 @@ class EmissionGuide {
   LeRandom Unbend(int light, const LeRandom& own) const;
 
   int64_t MemoryBytes() const;
-  /// What a guide takes at most that so many photons taught; while it learns it takes as much again.
-  static int64_t MostMemoryBytes(int64_t lights, int64_t pilotPhotons);
+  /// What a guide of so many lights takes at most; while it learns it takes as much again.
+  static int64_t MostMemoryBytes(int64_t lights);
   /// Of the pilot that taught it; 0 without one.
   int64_t PilotPhotons() const { return pilotPhotons_; }
 

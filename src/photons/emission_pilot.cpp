@@ -15,6 +15,7 @@ namespace dapple {
 namespace {
 
 constexpr uint64_t kPilot = 2;
+constexpr int64_t kMostPhotons = 1 << 16;
 
 /// Points that the camera looks at; each stands for the surface within its reach.
 struct VisiblePoints {
@@ -94,7 +95,7 @@ EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUse
   EmissionGuide guide;
   // About one light path a pixel in all: a small picture is not worth a long pilot.
   const Vec2i& resolution = scene.Settings().resolution;
-  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, kMostPilotPhotons / 2);
+  const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, kMostPhotons / 2);
   const int64_t rounds[] = {most / 2, most / 2, most};
   for (uint64_t round = 0; round < std::size(rounds); ++round) {
     const EmissionSampler emission(scene, guide);
@@ -113,6 +114,11 @@ EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUse
 }
 
 }  // namespace
+
+int64_t EmissionPilotBytes(const Scene& scene) {
+  const auto lights = static_cast<int64_t>(scene.Lights().size());
+  return kMostPhotons * static_cast<int64_t>(sizeof(PilotPhoton)) + 2 * EmissionGuide::MostMemoryBytes(lights);
+}
 
 EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed) {
   if (scene.Lights().empty()) return {};

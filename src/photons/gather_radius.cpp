@@ -36,8 +36,12 @@ std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission
 }  // namespace
 
 GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options)
-    : pilotPaths_(PilotPathsFor(paths)), scale_(static_cast<float>(options.scale)), grid_(scene, kMaxPixels) {
-  if (options.fixed) fixed_ = static_cast<float>(*options.fixed);
+    : scale_(static_cast<float>(options.scale)), grid_(scene, kMaxPixels) {
+  if (options.fixed) {
+    fixed_ = static_cast<float>(*options.fixed);
+    if (!options.forecastsPhotons) return;
+  }
+  pilotPaths_ = PilotPathsFor(paths);
   constexpr uint64_t kPilot = 3;
   std::vector<Vec3> positions =
       ShootPilot(scene, emission, pilotPaths_, options.maxDepth, options.causticsOnly, Hash(options.seed, kPilot));

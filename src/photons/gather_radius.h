@@ -29,10 +29,11 @@ struct GatherForecast {
 class GatherRadius {
  public:
   struct Options {
-    int maxDepth = 32;            ///< scattering events on a light path
-    double scale = 1;             ///< factor on the radii
-    bool causticsOnly = false;    ///< of the photons that are gathered
-    std::optional<double> fixed;  ///< one radius for all places, in scene units
+    int maxDepth = 32;             ///< scattering events on a light path
+    double scale = 1;              ///< factor on the radii
+    bool causticsOnly = false;     ///< of the photons that are gathered
+    std::optional<double> fixed;   ///< one radius for all places, in scene units
+    bool forecastsPhotons = true;  ///< false: radii are all that is asked for
     uint64_t seed = 0;
   };
   GatherRadius() = default;
@@ -40,6 +41,7 @@ class GatherRadius {
   /// alone.
   GatherRadius(const Scene& scene, const EmissionSampler& emission, int64_t paths, const Options& options);
 
+  /// Where the pilot left no photon near: the widest radius (or the fixed one), and no photons.
   GatherForecast At(const Vec3& p) const;
 
   int64_t MemoryBytes() const { return static_cast<int64_t>(cells_.size() * sizeof(Cell)); }

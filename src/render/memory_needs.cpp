@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "integrators/photon_shooting.h"
 #include "src/base/error.h"
 #include "src/image/image_io.h"
 #include "src/photons/light_path.h"
@@ -15,13 +14,8 @@ namespace {
 
 /// A photon (position and payload) stands in its chunk, whose arrays may be half empty while they grow, and in the map.
 constexpr int64_t kBytesPerPhoton = 3 * (12 + 32);
-/// Light paths of pilots are of fixed number. Measured in a closed room of albedo 0.95, where they are long: 33 MB, and
-/// with the pilot of a final gather 60 MB.
-constexpr int64_t kPilotBytes = 36'000'000, kPilotBytesOfFinalGather = 66'000'000;
 /// An image, what it is made from, and its file before and after compression.
 constexpr int64_t kCopiesOfPicture = 4;
-
-bool StoresPhotons(std::string_view integrator) { return integrator != "path" && integrator != "light_tracing"; }
 
 /// The mean over the light paths that leave any: emission may be guided to these.
 double PhotonsOfAPath(const Scene& scene, int maxDepth, uint64_t seed) {
@@ -66,7 +60,7 @@ void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracks
                             size, Megabytes(bytes), Megabytes(available)));
 }
 
-MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
+MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, const Integrator& integrator,
                            const IntegratorOptions& options, uint64_t seed, bool tracksBlur) {
   MemoryNeeds needs;
   const int64_t pixels = scene.Settings().crop.Area();
@@ -74,12 +68,14 @@ MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_v
   const int64_t channels = extras + Color::kComponents * (aovs.variance ? 2 : 1);
   needs.film = FilmBytes(scene.Settings(), aovs, tracksBlur);
   needs.files = std::max(needs.film, pixels * channels * static_cast<int64_t>(sizeof(float)) * kCopiesOfPicture);
-  if (StoresPhotons(integrator)) {
+  const PassForecast forecast = integrator.Forecast(scene, seed);
+  needs.pilots = forecast.pilotBytes;
+  if (forecast.storesPhotons) {
+    // Where Dapple chooses their number, a guide may double it.
+    needs.lightPaths = options.photonsPerPass ? *options.photonsPerPass : 2 * forecast.lightPaths;
     const double perPath = PhotonsOfAPath(scene, options.maxDepth, seed);
-    needs.lightPaths = EstimateLightPaths(scene, options, seed);
     needs.photons =
         static_cast<int64_t>(static_cast<double>(needs.lightPaths) * perPath * static_cast<double>(kBytesPerPhoton));
-    needs.pilots = integrator == "photon_mapping" ? kPilotBytesOfFinalGather : kPilotBytes;
   }
   return needs;
 }

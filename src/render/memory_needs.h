@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "integrators/integrator.h"
 #include "src/render/aov.h"
@@ -16,7 +15,7 @@ struct MemoryNeeds {
   int64_t film = 0;
   int64_t files = 0;       ///< while pictures are written, or the state
   int64_t photons = 0;     ///< of a pass, where the integrator stores any
-  int64_t lightPaths = 0;  ///< of a pass, whose photons these are
+  int64_t lightPaths = 0;  ///< of a pass, at most, whose photons these are
   int64_t pilots = 0;      ///< while they learn where photons are of use
 
   int64_t Sum() const { return film + files + photons + pilots; }
@@ -27,7 +26,7 @@ struct MemoryNeeds {
 void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracksBlur, int64_t available);
 
 /// What a light path leaves of photons is counted on a few thousand paths. `tracksBlur` as above.
-MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, std::string_view integrator,
+MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, const Integrator& integrator,
                            const IntegratorOptions& options, uint64_t seed, bool tracksBlur = false);
 
 /// Throws `Error` where the needs and what is in use already are more than the limit: it says what takes how much, and

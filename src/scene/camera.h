@@ -6,6 +6,7 @@
 // pixel.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "src/base/color.h"
@@ -52,10 +53,11 @@ class Camera {
 
   /// Joins `p` to the lens. The contribution of a light path to the film at `film` is throughput * We / pdf (spread by
   /// the filter), where throughput ends with the surface's Eval toward wi. Nothing where the camera cannot see `p`.
-  /// Cameras without this side (see `CanConnect`) never give anything.
   virtual std::optional<WiSample> Sample_Wi(const Vec3& p, const Vec2d& uLens) const = 0;
-  /// True where `Sample_Wi` works: light paths can be joined to this camera.
-  virtual bool CanConnect() const { return true; }
+  /// Positions around the picture whose rays go the same way as that of `film` within it; returns how many. Near the
+  /// border a filter reaches over to them, so light that lands on `film` lands there too.
+  static constexpr int kMostRepeats = 8;
+  virtual int FilmRepeats(const Vec2& /*film*/, std::array<Vec2, kMostRepeats>* /*repeats*/) const { return 0; }
 
   /// Importance carried along a ray that leaves the lens, and its film position; zero outside the image.
   virtual float We(const Ray& ray, Vec2* film) const = 0;

@@ -76,6 +76,23 @@ std::optional<WiSample> SphericalCamera::Sample_Wi(const Vec3& p, const Vec2d&) 
   return sample;
 }
 
+int SphericalCamera::FilmRepeats(const Vec2& film, std::array<Vec2, kMostRepeats>* repeats) const {
+  const auto width = static_cast<float>(resolution_.x), height = static_cast<float>(resolution_.y);
+  const float x = film.x, y = film.y;
+  if (mapping_ == SphericalProjection::EqualArea) {
+    *repeats = {Vec2(-x, height - y),        Vec2(2 * width - x, height - y),
+                Vec2(width - x, -y),         Vec2(width - x, 2 * height - y),
+                Vec2(x - width, y - height), Vec2(x - width, y + height),
+                Vec2(x + width, y - height), Vec2(x + width, y + height)};
+    return 8;
+  }
+  // Round the axis, and over the poles.
+  *repeats = {Vec2(x - width, y),      Vec2(x + width, y),
+              Vec2(x - width / 2, -y), Vec2(x - width / 2, 2 * height - y),
+              Vec2(x + width / 2, -y), Vec2(x + width / 2, 2 * height - y)};
+  return 6;
+}
+
 float SphericalCamera::We(const Ray& ray, Vec2* film) const {
   const Vec3d direction = Normalize(frame_.VectorToCamera(ray.d));
   *film = ToFilm(direction);

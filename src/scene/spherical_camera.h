@@ -24,6 +24,7 @@ class SphericalCamera final : public Camera {
   CameraRay GenerateRay(const Vec2& film, const Vec2d& uLens, double uTime) const override;
   /// No lens has a cosine here: We is per solid angle, over distance^2 in the sample (a discrete origin).
   std::optional<WiSample> Sample_Wi(const Vec3& p, const Vec2d& uLens) const override;
+  int FilmRepeats(const Vec2& film, std::array<Vec2, kMostRepeats>* repeats) const override;
   float We(const Ray& ray, Vec2* film) const override;
   WePdf Pdf_We(const Ray& ray) const override;
   Vec3 Position() const override;

@@ -21,8 +21,8 @@ struct Estimate {
 };
 
 Estimate MeanRadiance(const std::string& text, const std::string& integrator, int passes,
-                      const IntegratorOptions& options = {}) {
-  const auto scene = SceneFromText(text);
+                      const IntegratorOptions& options = {}, int pbrtVersion = 3) {
+  const auto scene = SceneFromText(text, pbrtVersion);
   constexpr int kGroups = 16;
   const GroupedImages images = RenderGroups(*scene, integrator, options, passes, kGroups);
   std::vector<double> means;
@@ -74,6 +74,24 @@ TEST(IntegratingSphere, Photons) {
   // On a curved surface a disk of radius r holds 1 + O(r^2) of its flat area.
   for (const char* integrator : {"photon_mapping", "sppm", "hybrid"})
     ExpectRadiance(MeanRadiance(IntegratingSphere(0.5), integrator, 128, options), 2, 0.05 * 0.05);
+}
+
+// A picture of all directions goes on beyond its borders: light that lands near one of them lands near another too. In
+// so small a picture a third of all pixels lie there.
+TEST(IntegratingSphere, LightTracingToTheBordersOfAPictureOfAllDirections) {
+  IntegratorOptions options;
+  options.photonsPerPass = 2000;
+  for (const char* mapping : {"equirectangular", "equalarea"}) {
+    const int height = mapping == std::string("equalarea") ? 12 : 6;
+    const std::string text = fmt::format(
+        "LookAt 0 0 0.2  0.3 0.4 -1  0 1 0 Camera \"spherical\" \"string mapping\" \"{}\" "
+        "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" {} "
+        "PixelFilter \"gaussian\" \"float xradius\" 1.5 \"float yradius\" 1.5 WorldBegin ReverseOrientation "
+        "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5] AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] "
+        "Shape \"sphere\" \"float radius\" 1",
+        mapping, height);
+    ExpectRadiance(MeanRadiance(text, "light_tracing", 128, options, 4), 2);
+  }
 }
 
 // A lamp behind the camera, seen in a pane of glass before the dark: four per cent of its radiance (index 1.5, head

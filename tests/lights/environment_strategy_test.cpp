@@ -106,7 +106,7 @@ struct Receiver {
   LightContext ContextFor(const Light& light, const Bsdf& bsdf, bool bsdfDrawsToo = false) const {
     LightContext at(Vec3(0.5f, 0, 1), n, bsdf.Flags().HasTransmission());
     at.bsdfDrawsToo = bsdfDrawsToo;
-    if (auto table = light.PrepareReceiver(at, bsdf, wo)) at.tables.push_back(std::move(table));
+    if (auto table = light.PrepareReceiver(bsdf, wo)) at.tables.push_back(std::move(table));
     return at;
   }
 };

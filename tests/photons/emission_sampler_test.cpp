@@ -166,6 +166,23 @@ TEST(EmissionGuide, SendsMoreLightPathsIntoThePicture) {
   EXPECT_GT(useful(Guide::Joined), 5 * useful(Guide::None));
 }
 
+// A thousand lamps, all of use.
+TEST(EmissionGuide, OfManyLightsTakesLittleMemory) {
+  constexpr int kLights = 1000;
+  const std::vector<double> power(kLights, 1);
+  std::vector<PilotPhoton> pilot;
+  for (int i = 0; i < 4 * kLights; ++i) pilot.push_back({i % kLights, {0.3, 0.7}, {0.2, 0.9}, false, false, 1});
+  const EmissionGuide guide(power, pilot);
+  int guided = 0;
+  for (int i = 0; i < kLights; ++i) {
+    guided += guide.Bends(i);
+    EXPECT_NEAR(guide.LightProbability(i), 1.0 / kLights, 1e-9);
+  }
+  EXPECT_EQ(guided, 512);
+  EXPECT_LE(guide.MemoryBytes(), EmissionGuide::MostMemoryBytes(kLights));
+  EXPECT_GT(guide.MemoryBytes(), EmissionGuide::MostMemoryBytes(kLights) / 2);
+}
+
 TEST(EmissionGuide, IsAFunctionOfTheSeedWhateverTheThreads) {
   const auto scene = testing_support::SceneFromText(kScene);
   for (const Guide guide : {Guide::Gathered, Guide::Joined}) {

@@ -178,7 +178,7 @@ class SickIntegrator final : public Integrator {
   PassStats RenderPass(int pass, Film& film) const override {
     int64_t calls = 0;
     const PassStats stats = RenderPixels(
-        *scene_, 1, pass, 1,
+        *scene_, 1, pass, SampleAllocation(1),
         [&](const CameraRay&, Sampler&, PassStats&) {
           return std::atomic_ref(calls).fetch_add(1) % 2 == 0 ? Color(kNan) : Color(1);
         },
