@@ -1,6 +1,5 @@
 #include "integrators/photon_shooting.h"
 
-#include <bit>
 #include <cmath>
 
 #include "src/photons/emission_pilot.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "integrators/camera_path.h"
+#include "src/base/grid.h"
 #include "src/base/hash.h"
 #include "src/base/numerics.h"
 #include "src/base/parallel.h"
@@ -21,34 +22,6 @@ constexpr int kPathsOfMean = 4;
 constexpr double kPathsAPixel = 2, kMostPaths = 1 << 18;
 /// Noise counts relative to the brightness of its place, and to this share of the picture's median where that is more.
 constexpr double kDark = 0.3;
-
-/// A grid of numbers over the picture, one for each cell.
-struct Grid {
-  Grid(int columnCount, int rowCount)
-      : columns(columnCount), rows(rowCount), values(static_cast<size_t>(columns) * static_cast<size_t>(rows)) {}
-
-  int columns, rows;
-  std::vector<double> values;
-
-  /// Of the cell, or the nearest one where there is none.
-  double At(int x, int y) const {
-    return values[static_cast<size_t>(std::clamp(y, 0, rows - 1)) * static_cast<size_t>(columns) +
-                  static_cast<size_t>(std::clamp(x, 0, columns - 1))];
-  }
-};
-
-/// Each number joined with its neighbours, by binomial weights.
-Grid Smoothed(const Grid& grid) {
-  Grid result(grid.columns, grid.rows);
-  for (int y = 0; y < grid.rows; ++y)
-    for (int x = 0; x < grid.columns; ++x) {
-      double sum = 0;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) * grid.At(x + dx, y + dy);
-      result.values[static_cast<size_t>(y) * static_cast<size_t>(grid.columns) + static_cast<size_t>(x)] = sum / 16;
-    }
-  return result;
-}
 
 /// Of those that are not zero; zero where there is none.
 double Median(std::vector<double> values) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "src/base/grid.h"
 #include "src/base/numerics.h"
 
 namespace dapple {
@@ -18,14 +20,14 @@ constexpr size_t kMostGuided = 512;
 class Histogram {
  public:
   void Add(const Vec2d& u, double weight) {
-    if (sums_.empty()) sums_.assign(kCells * kCells, 0);
-    const auto cell = [](double x) { return std::clamp(static_cast<int>(x * kCells), 0, kCells - 1); };
-    sums_[static_cast<size_t>(cell(u.y) * kCells + cell(u.x))] += weight;
+    if (!sums_) sums_.emplace(kCells, kCells);
+    sums_->At(static_cast<int>(u.x * kCells), static_cast<int>(u.y * kCells)) += weight;
   }
 
   Distribution2D ToTable() const {
-    if (sums_.empty()) return {};
-    std::vector<double> weights = Smoothed();
+    if (!sums_) return {};
+    // Neighbours of a useful cell are likely useful too.
+    std::vector<double> weights = Smoothed(*sums_).values;
     double sum = 0;
     for (double& weight : weights) sum += weight = std::sqrt(weight);
     if (!(sum > 0)) return {};
@@ -36,23 +38,7 @@ class Histogram {
   }
 
  private:
-  /// Neighbours of a useful cell are likely useful too: a 3 x 3 binomial filter, which keeps the sum inside the
-  /// borders.
-  std::vector<double> Smoothed() const {
-    constexpr double kTap[3] = {0.25, 0.5, 0.25};
-    std::vector<double> result(sums_.size());
-    for (int y = 0; y < kCells; ++y)
-      for (int x = 0; x < kCells; ++x)
-        for (int dy = -1; dy <= 1; ++dy)
-          for (int dx = -1; dx <= 1; ++dx) {
-            const int fromX = std::clamp(x + dx, 0, kCells - 1), fromY = std::clamp(y + dy, 0, kCells - 1);
-            result[static_cast<size_t>(y * kCells + x)] +=
-                kTap[dx + 1] * kTap[dy + 1] * sums_[static_cast<size_t>(fromY * kCells + fromX)];
-          }
-    return result;
-  }
-
-  std::vector<double> sums_;
+  std::optional<Grid> sums_;
 };
 
 std::vector<size_t> GuidedLights(size_t lights, std::span<const PilotPhoton> pilot) {
