@@ -19,6 +19,7 @@
 #include "src/image/image_io.h"
 #include "src/image/metrics.h"
 #include "src/io/build_context.h"
+#include "src/render/json_text.h"
 #include "src/render/output.h"
 
 namespace dapple {
@@ -100,7 +101,7 @@ void PrintJson(const CompareOptions& options, const std::vector<Comparison>& com
                                  {"pixelsPerDegree", options.pixelsPerDegree},
                                  {"images", nlohmann::ordered_json::array()}};
   for (const Comparison& comparison : comparisons) json["images"].push_back(ToJson(comparison));
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", DumpJson(json, 2));
 }
 
 void PrintText(const CompareOptions& options, const std::vector<Comparison>& comparisons) {

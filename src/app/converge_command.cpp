@@ -23,6 +23,7 @@
 #include "src/image/atomic_file.h"
 #include "src/image/false_color.h"
 #include "src/image/image_io.h"
+#include "src/render/json_text.h"
 #include "src/render/version.h"
 
 namespace dapple {
@@ -87,7 +88,7 @@ void WriteReport(const ConvergeOptions& options, const std::vector<Study>& studi
   Json data = ConvergenceToJson(scenes, About());
   const auto path = [&](const std::string& name) { return (std::filesystem::path(options.folder) / name).string(); };
   WriteFileAtomically(path("data.csv"), ConvergenceToCsv(scenes));
-  WriteFileAtomically(path("data.json"), data.dump(1) + "\n");
+  WriteFileAtomically(path("data.json"), DumpJson(data, 1) + "\n");
   for (size_t i = 0; i < studies.size(); ++i) data["scenes"][i]["pictures"] = ToJson(studies[i].pictures);
   data["ramp"] = RampForPage();
   WriteFileAtomically(path("index.html"), ReportPage(data));

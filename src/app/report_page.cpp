@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "src/render/json_text.h"
+
 namespace dapple {
 
 namespace {
@@ -31,7 +33,7 @@ void Replace(std::string* text, std::string_view mark, std::string_view content)
 
 /// JSON that may stand in a script element: no "</" ends it early.
 std::string ToScriptText(const nlohmann::ordered_json& data) {
-  std::string text = data.dump();
+  std::string text = DumpJson(data);
   for (size_t i = 0; (i = text.find("</", i)) != std::string::npos; i += 3) text.insert(i + 1, 1, '\\');
   return text;
 }

@@ -10,6 +10,7 @@
 #include "src/base/error.h"
 #include "src/base/parallel.h"
 #include "src/photons/light_path.h"
+#include "src/render/json_text.h"
 
 namespace dapple {
 
@@ -125,7 +126,7 @@ std::string RaysToJson(const Scene& scene, const EmittedRays& emitted) {
     head["lights"].push_back({{"index", i}, {"name", light.Name()}, {"power", {power.r, power.g, power.b}}});
   }
   head["columns"] = ColumnNames();
-  std::string text = head.dump(1);
+  std::string text = DumpJson(head, 1);
   text.erase(text.rfind('\n'));  // goes on before the closing brace
   text += ",\n \"data\": [";
   for (size_t i = 0; i < emitted.rays.size(); ++i) {

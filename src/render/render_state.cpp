@@ -9,6 +9,7 @@
 
 #include "src/base/content_hash.h"
 #include "src/image/atomic_file.h"
+#include "src/render/json_text.h"
 
 namespace dapple {
 
@@ -33,8 +34,7 @@ std::string OriginToJson(const RenderOrigin& origin) {
   for (const auto& [name, value] : origin.identity.fields) json["identity"][name] = value;
   if (record.seconds) json["seconds"] = *record.seconds;
   if (record.clamp) json["clamp"] = *record.clamp;
-  // Names of files may hold any bytes.
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return DumpJson(json);
 }
 
 RenderOrigin OriginFromJson(std::string_view text) {

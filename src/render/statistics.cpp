@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "src/render/json_text.h"
+
 namespace dapple {
 
 namespace {
@@ -60,7 +62,7 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
     json["error"] = {{"total", error->Total()}, {"noise", error->noise}, {"bias", nullptr}};
     if (film.TracksBlur()) json["error"]["bias"] = error->bias;
   }
-  return json.dump(2) + "\n";
+  return DumpJson(json, 2) + "\n";
 }
 
 std::string DescribeNonFinite(const Film& film) {

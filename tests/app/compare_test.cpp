@@ -65,6 +65,13 @@ TEST_F(Compare, MeasuresKnownImages) {
   EXPECT_GT(more["flip"], 0);
 }
 
+TEST_F(Compare, NamesThatAreNoUtf8MakeJsonToo) {
+  WriteExr(Path("caf\xe9.exr"), Constant(4, 3, Color(2)));
+  const nlohmann::json json = Json("'caf\xe9.exr' 'caf\xe9.exr'");
+  EXPECT_EQ(json["reference"], "caf\xef\xbf\xbd.exr");
+  EXPECT_EQ(json["images"][0]["mse"], 0);
+}
+
 TEST_F(Compare, TilesScanlinesHalfAndFloatAreOne) {
   const Image test = Constant(40, 30, Color(0.75f)), reference = Constant(40, 30, Color(0.5f));
   WriteExr(Path("ref.exr"), reference);

@@ -99,6 +99,16 @@ TEST_F(Converge, ASignalEndsItWithTheRunsThatAreComplete) {
   EXPECT_TRUE(Exists("out/index.html"));
 }
 
+// Names of files may hold any bytes.
+TEST_F(Converge, ANameThatIsNoUtf8LosesNoStudy) {
+  WriteScene("caf\xe9.pbrt");
+  const ProgramResult result =
+      Run("converge 'caf\xe9.pbrt' --integrators path --time 0.02 --seeds 1 --reference-time 0.05 -o out --quiet");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(Read("out/data.json"))["scenes"][0]["name"], "caf\xef\xbf\xbd");
+  EXPECT_TRUE(Contains(Read("out/index.html"), "\"name\":\"caf\xef\xbf\xbd\""));
+}
+
 TEST_F(Converge, AReferenceThatDoesNotFitIsTold) {
   WriteScene("tiny.pbrt");
   WriteExr(Path("wide.exr"), Image::Rgb(25, 16));

@@ -72,6 +72,13 @@ TEST_F(Program, StatisticsCountWhatWasDone) {
   EXPECT_EQ(Run("tiny.pbrt --passes 1 -o a.exr --stats missing/stats.json").exitCode, 1);
 }
 
+TEST_F(Program, ANameThatIsNoUtf8LosesNoStatistics) {
+  WriteScene("caf\xe9.pbrt");
+  const ProgramResult result = Run("'caf\xe9.pbrt' --quiet --integrator path --passes 1 -o a.exr --stats s.json");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(Read("s.json"))["scene"], "caf\xef\xbf\xbd.pbrt");
+}
+
 TEST_F(Program, WhatAFileTunesForSppmHoldsForSppmAlone) {
   WriteScene("tiny.pbrt");
   Write("tuned.pbrt", "Integrator \"sppm\" \"integer photonsperiteration\" 100\n" + Read("tiny.pbrt"));
