@@ -100,9 +100,8 @@ void TellDuration(const ConvergeOptions& options) {
   const double runs = static_cast<double>(options.integrators.size()) *
                       static_cast<double>(std::max<size_t>(1, options.strategies.size())) * options.seeds;
   const double ofReference = options.referenceFile.empty() ? options.referenceSeconds : 0;
-  fmt::print(
-      stderr, "about {} of rendering\n",
-      FormatDuration(static_cast<double>(options.scenes.size()) * (runs * *options.scene.seconds + ofReference)));
+  Tell(fmt::format("about {} of rendering", FormatDuration(static_cast<double>(options.scenes.size()) *
+                                                           (runs * *options.scene.seconds + ofReference))));
 }
 
 int RunConverge(ConvergeOptions options) {

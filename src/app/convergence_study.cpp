@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -45,7 +44,7 @@ class StudyRunner {
         stop_(stop),
         times_(SnapshotTimes(*options.scene.seconds)),
         name_(SceneName(options.scene.scene)),
-        diagnostics_([](const std::string& line) { fmt::print(stderr, "{}\n", line); }) {}
+        diagnostics_(Tell) {}
 
   Study Run() {
     const Scene& scene = SceneOf("path", "");
@@ -69,8 +68,8 @@ class StudyRunner {
 
  private:
   template <typename... Args>
-  void Tell(fmt::format_string<Args...> format, Args&&... args) const {
-    if (!isQuiet_) fmt::print(stderr, "{}: {}\n", name_, fmt::format(format, std::forward<Args>(args)...));
+  void Report(fmt::format_string<Args...> format, Args&&... args) const {
+    if (!isQuiet_) Tell(fmt::format("{}: {}", name_, fmt::format(format, std::forward<Args>(args)...)));
   }
 
   /// As it is loaded for that integrator.
@@ -134,7 +133,7 @@ class StudyRunner {
 
   Image RenderReference(const Scene& scene) {
     const RenderPlan plan = PlanOf(options_.referenceIntegrator, scene);
-    Tell("reference, {}, {}", plan.choice.name, FormatDuration(options_.referenceSeconds));
+    Report("reference, {}, {}", plan.choice.name, FormatDuration(options_.referenceSeconds));
     Film film = FilmOf(scene);
     RenderBudget budget;
     budget.seconds = options_.referenceSeconds;
@@ -168,8 +167,9 @@ class StudyRunner {
       result.snapshots.push_back({snapshot.timeIndex, snapshot.seconds, snapshot.passes, meter.Measure(picture)});
       if (keepsPictures && IsPictured(snapshot.timeIndex)) Keep(index, snapshot, picture, meter.Reference());
     }
-    Tell("{}, seed {}: {} in {}, relative MSE {:.3g}", contender.name, seed,
-         FormatNumberOf(run.passes, "pass", "passes"), FormatDuration(run.seconds), result.snapshots.back().errors[0]);
+    Report("{}, seed {}: {} in {}, relative MSE {:.3g}", contender.name, seed,
+           FormatNumberOf(run.passes, "pass", "passes"), FormatDuration(run.seconds),
+           result.snapshots.back().errors[0]);
     contender.seeds.push_back(std::move(result));
   }
 

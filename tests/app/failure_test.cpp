@@ -151,6 +151,17 @@ TEST_F(Failure, ARenderIsNotLostForWantOfAListener) {
   EXPECT_TRUE(Read("a.exr") == Read("b.exr"));
 }
 
+TEST_F(Failure, AStudyIsNotLostForWantOfAListener) {
+  WriteScene("tiny.pbrt");
+  Write("warns.pbrt", Read("tiny.pbrt") + "Shape \"curve\"\n");
+  const std::string rest = " --integrators path --time 0.02 --seeds 1 --reference-time 0.05 -o out";
+  for (const char* options : {"", " --quiet"}) {
+    const ProgramResult deaf = Run("converge warns.pbrt" + rest + options + " >stdout.txt 2>&9 #", OpenBrokenPipe);
+    ASSERT_EQ(deaf.exitCode, 0);
+    EXPECT_TRUE(std::filesystem::remove(Path("out/index.html")));
+  }
+}
+
 TEST_F(Failure, WhatCannotBePrintedIsAnError) {
   WriteScene("tiny.pbrt");
   for (const char* command : {"info tiny.pbrt", "tiny.pbrt --integrator path --passes 1"}) {
