@@ -1,6 +1,7 @@
 #include "src/render/emitted_rays.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 
@@ -73,15 +74,24 @@ EmittedRay ToWorld(const Transform& renderToWorld, const EmissionSample& sample,
   return ray;
 }
 
-/// The columns of a ray, the name in quotation marks or not.
-void AppendRow(const Scene& scene, const EmittedRay& r, std::string_view quote, std::string* text) {
-  const Vec3d& o = r.origin;
-  const Vec3 &d = r.direction, &n = r.normal;
-  const std::string_view name = scene.Lights()[static_cast<size_t>(r.light)]->Name();
-  fmt::format_to(std::back_inserter(*text), "{},{}{}{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:d},{:d},{},{},{}",
-                 r.light, quote, name, quote, o.x, o.y, o.z, d.x, d.y, d.z, n.x, n.y, n.z, r.radiance.r, r.radiance.g,
-                 r.radiance.b, r.pdfLight, r.pdfPosition, r.pdfDirection, r.positionIsDiscrete, r.directionIsDiscrete,
-                 r.flux.r, r.flux.g, r.flux.b);
+enum class RowFormat { Csv, Json };
+
+/// The columns of a ray. JSON has names in quotation marks, and no infinities: they are null, as the flux of a light
+/// beyond all floats.
+void AppendRow(const Scene& scene, const EmittedRay& r, RowFormat format, std::string* text) {
+  const auto end = std::back_inserter(*text);
+  const bool isJson = format == RowFormat::Json;
+  const auto addOne = [&](auto number) {
+    isJson && !std::isfinite(number) ? fmt::format_to(end, ",null") : fmt::format_to(end, ",{}", number);
+  };
+  const auto add = [&](auto... numbers) { (addOne(numbers), ...); };
+  const std::string_view name = scene.Lights()[static_cast<size_t>(r.light)]->Name(), quote = isJson ? "\"" : "";
+  fmt::format_to(end, "{},{}{}{}", r.light, quote, name, quote);
+  add(r.origin.x, r.origin.y, r.origin.z);
+  for (const Vec3& v : {r.direction, r.normal}) add(v.x, v.y, v.z);
+  add(r.radiance.r, r.radiance.g, r.radiance.b, r.pdfLight, r.pdfPosition, r.pdfDirection);
+  fmt::format_to(end, ",{:d},{:d}", r.positionIsDiscrete, r.directionIsDiscrete);
+  add(r.flux.r, r.flux.g, r.flux.b);
 }
 
 static_assert(std::endian::native == std::endian::little, "PLY files are written as they lie in memory");
@@ -112,7 +122,7 @@ EmittedRays EmitRays(const Scene& scene, const EmitOptions& options) {
 std::string RaysToCsv(const Scene& scene, const EmittedRays& emitted) {
   std::string text = std::string(kColumns) + "\n";
   for (const EmittedRay& ray : emitted.rays) {
-    AppendRow(scene, ray, "", &text);
+    AppendRow(scene, ray, RowFormat::Csv, &text);
     text += '\n';
   }
   return text;
@@ -131,7 +141,7 @@ std::string RaysToJson(const Scene& scene, const EmittedRays& emitted) {
   text += ",\n \"data\": [";
   for (size_t i = 0; i < emitted.rays.size(); ++i) {
     text += i == 0 ? "\n  [" : ",\n  [";
-    AppendRow(scene, emitted.rays[i], "\"", &text);
+    AppendRow(scene, emitted.rays[i], RowFormat::Json, &text);
     text += ']';
   }
   return text + "\n ]\n}\n";

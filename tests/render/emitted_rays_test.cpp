@@ -1,5 +1,7 @@
 #include "src/render/emitted_rays.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -126,6 +128,19 @@ TEST(EmittedRays, TheFormatsAgree) {
     EXPECT_EQ(static_cast<float>(row[5]), emitted.rays[i].direction.x);
     EXPECT_EQ(static_cast<double>(row[16]), emitted.rays[i].pdfDirection);
   }
+}
+
+TEST(EmittedRays, WhatIsBeyondAllFloatsIsNullInJson) {
+  const auto scene = SceneFromText(
+      "Camera \"perspective\" WorldBegin LightSource \"point\" \"rgb I\" [2e38 1 2e38] Shape \"sphere\" WorldEnd");
+  const EmittedRays emitted = EmitRays(*scene, {.count = 3, .light = 0, .seed = 1});
+  ASSERT_TRUE(std::isinf(emitted.rays.at(0).flux.r));
+  const auto json = nlohmann::json::parse(RaysToJson(*scene, emitted));
+  const auto& row = json["data"][0];
+  ASSERT_EQ(row.size(), json["columns"].size());
+  EXPECT_TRUE(row[19].is_null());
+  EXPECT_NEAR(static_cast<double>(row[20]), 4 * kPiD / 3, 1e-5);
+  EXPECT_EQ(static_cast<float>(row[11]), 2e38f);
 }
 
 }  // namespace
