@@ -178,9 +178,10 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N");
   command
-      ->add_option("--strategies", options->strategies,
-                   "Each algorithm with each of these for infinite lights: uniform, cosine, importance, compensated, "
-                   "structured or product, for emission too where it knows the name; SAMPLING/EMISSION sets both")
+      ->add_option(
+          "--strategies", options->strategies,
+          "Each algorithm with each of these for infinite lights: uniform, cosine, importance, irradiance, "
+          "compensated, structured or product, for emission too where it knows the name; SAMPLING/EMISSION sets both")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("A,B,...");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -59,9 +60,10 @@ class StudyRunner {
     study_.pictures.reference = meter.Reference();
     study_.pictures.contenders.resize(convergence.contenders.size());
     const int firstSeed = options_.scene.seed.value_or(scene.Settings().seed.value_or(0));
-    for (int seed = firstSeed; seed < firstSeed + options_.seeds; ++seed) {
-      for (size_t i = 0; i < convergence.contenders.size() && !stop_; ++i)
-        RunContender(i, seed, seed == firstSeed, meter);
+    for (int k = 0; k < options_.seeds; ++k) {
+      // Behind the greatest seed comes the least.
+      const int seed = static_cast<int>(static_cast<uint32_t>(firstSeed) + static_cast<uint32_t>(k));
+      for (size_t i = 0; i < convergence.contenders.size() && !stop_; ++i) RunContender(i, seed, k == 0, meter);
     }
     return std::move(study_);
   }
@@ -132,7 +134,7 @@ class StudyRunner {
   }
 
   Image RenderReference(const Scene& scene) {
-    const RenderPlan plan = PlanOf(options_.referenceIntegrator, scene);
+    const RenderPlan plan = PlanOf(options_.referenceIntegrator, scene, kReferenceSeed);
     Report("reference, {}, {}", plan.choice.name, FormatDuration(options_.referenceSeconds));
     Film film = FilmOf(scene);
     RenderBudget budget;

@@ -99,6 +99,32 @@ TEST_F(Converge, ASignalEndsItWithTheRunsThatAreComplete) {
   EXPECT_TRUE(Exists("out/index.html"));
 }
 
+TEST_F(Converge, SeedsGoOnBehindTheGreatest) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(Run("converge tiny.pbrt --integrators path --time 0.02 --seeds 2 --seed 2147483647 --reference-time 0.05 "
+                "-o out --quiet")
+                .exitCode,
+            0);
+  const auto seeds = nlohmann::json::parse(Read("out/data.json"))["scenes"][0]["contenders"][0]["seeds"];
+  ASSERT_EQ(seeds.size(), 2u);
+  EXPECT_EQ(seeds[0]["seed"], 2147483647);
+  EXPECT_EQ(seeds[1]["seed"], -2147483648);
+}
+
+// All that is random in it follows from its own seed: what a pilot of `auto` learned too.
+TEST_F(Converge, TheReferenceIsARenderOfItsSeed) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(
+      Run("converge tiny.pbrt --integrators path --time 0.02 --seeds 1 --reference-time 0.4 -o out --quiet").exitCode,
+      0);
+  const auto scene = nlohmann::json::parse(Read("out/data.json"))["scenes"][0];
+  const std::string source = scene["reference"]["source"];
+  ASSERT_TRUE(BeginsWith(source, "hybrid, "));
+  const std::string passes = source.substr(8, source.find(" pass") - 8);
+  ASSERT_EQ(Run("tiny.pbrt --integrator auto --seed 1592651789 -o a.exr --quiet --passes " + passes).exitCode, 0);
+  EXPECT_EQ(CompareImages(ReadImage(Path("a.exr")), ReadImage(Path("out/reference-tiny.exr"))).mse, 0);
+}
+
 // Names of files may hold any bytes.
 TEST_F(Converge, ANameThatIsNoUtf8LosesNoStudy) {
   WriteScene("caf\xe9.pbrt");
