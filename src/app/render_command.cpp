@@ -1,4 +1,5 @@
 // `dapple render`: reads a scene, renders it within a budget, writes the picture.
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -34,6 +35,7 @@ struct RenderOptions : SceneOptions {
   std::vector<std::string> outputs;
   std::string statistics;
   AovSet aovs;
+  std::optional<float> clamp;   ///< `Film::ClampTo`
   std::optional<double> error;  ///< at which the render ends
   std::optional<double> checkpointSeconds;
   bool resumes = false;
@@ -285,6 +287,11 @@ int RunRender(RenderOptions options) {
   return Finish(options, origin, result, needs, scene, film, signals.Signal(), checkpoint);
 }
 
+/// A snapshot is a picture, of outputs that are one.
+bool HasNoPicture(const RenderOptions& options) {
+  return options.outputs.empty() ? options.isPart : std::ranges::all_of(options.outputs, IsStateName);
+}
+
 SnapshotSchedule ParseSnapshots(const std::string& text) {
   if (text == "times") return SnapshotSchedule::AtTimes(1, 2);
   int passes = 0;
@@ -312,7 +319,16 @@ AovSet ParseAovOption(const std::string& text) {
                              fmt::format("expected some of albedo,normal,depth,position,variance, not '{}'", text));
 }
 
-void AddErrorOption(CLI::App* command, RenderOptions* options) {
+/// What bounds the error, or gives up on it.
+void AddErrorOptions(CLI::App* command, RenderOptions* options) {
+  const std::string group = command->get_option("--passes")->get_group();
+  command
+      ->add_option("--clamp", options->clamp,
+                   "The most that one sample adds to a pixel of a pass, in any channel; by default there is no such "
+                   "bound. Takes fireflies away, and energy with them; recorded in the file")
+      ->check(CheckPositive)
+      ->type_name("VALUE")
+      ->group(group);
   command
       ->add_option("--error", options->error,
                    "Render until the estimated relative error, noise and bias together, is below E (0.01: one per "
@@ -321,7 +337,7 @@ void AddErrorOption(CLI::App* command, RenderOptions* options) {
       ->check(CheckPositive)
       ->excludes("--clamp")
       ->type_name("E")
-      ->group(command->get_option("--passes")->get_group());
+      ->group(group);
 }
 
 /// What a render leaves behind, beside the picture.
@@ -342,7 +358,7 @@ void AddFilesGroup(CLI::App* command, RenderOptions* options) {
       ->add_option_function<std::string>(
           "--snapshots", [options](const std::string& text) { options->snapshots = ParseSnapshots(text); },
           "Write pictures on the way, as OUTPUT with the number of passes in its name: every N passes, or at times: "
-          "after 1, 2, 4, 8, ... seconds")
+          "after 1, 2, 4, 8, ... seconds. Of outputs that are pictures")
       ->type_name("N|times")
       ->group(group);
   command
@@ -374,7 +390,7 @@ void AddRenderCommand(CLI::App& program, Action* action) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   options->AddTo(command);
-  AddErrorOption(command, options.get());
+  AddErrorOptions(command, options.get());
   AddFilesGroup(command, options.get());
   command
       ->add_option_function<std::string>(
@@ -386,6 +402,8 @@ void AddRenderCommand(CLI::App& program, Action* action) {
   command->callback([options, action] {
     if (options->error && options->isPart)
       throw CLI::ValidationError("--error", "it is of the whole picture, not of a range of passes");
+    if (options->snapshots && HasNoPicture(*options))
+      throw CLI::ValidationError("--snapshots", "they are pictures: give an --output that is one, .exr or .png");
     *action = [options] { return RunRender(*options); };
   });
 }

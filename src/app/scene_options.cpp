@@ -134,13 +134,6 @@ void AddBudgetGroup(CLI::App* command, SceneOptions* options) {
 void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
   const std::string group = kRenderGroup;
   command->add_option("--seed", options->seed, "Seed of all random numbers")->type_name("N")->group(group);
-  command
-      ->add_option("--clamp", options->clamp,
-                   "The most that one sample adds to a pixel of a pass, in any channel; by default there is no such "
-                   "bound. Takes fireflies away, and energy with them; recorded in the file")
-      ->check(CheckPositive)
-      ->type_name("VALUE")
-      ->group(group);
   command->add_option("--max-depth", options->maxDepth, "Scattering events on a path")
       ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
       ->type_name("N")

@@ -41,7 +41,6 @@ struct SceneOptions {
   bool isPart = false;              ///< `passes` were given as a range of the whole
   std::optional<double> seconds;
   std::optional<int> seed;
-  std::optional<float> clamp;  ///< `Film::ClampTo`
   std::optional<int> maxDepth;
   std::optional<int> photons;
   std::optional<int> cameraSamples;
