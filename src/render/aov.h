@@ -1,8 +1,9 @@
 // What denoisers and compositing want beside the radiance (arbitrary output variables): what the camera's own rays meet
 // first, and how noisy each pixel is.
 //
-// First hits are found by rays of their own, those through which integrators too look at each pixel of a pass; so every
-// integrator has them, and none is changed by them. Their sums lie in the film (`Film::AddExtras`), exact as all of it.
+// First hits are found by rays of their own, one a pixel and pass, so every integrator has them, and none is changed by
+// them. An integrator whose passes have one camera path a pixel looks through the same rays. Their sums lie in the film
+// (`Film::AddExtras`), exact as all of it.
 #pragma once
 
 #include <optional>

@@ -40,7 +40,7 @@ struct RenderBudget {
 struct RenderProgress {
   int passesDone = 0;                  ///< in the film
   double seconds = 0;                  ///< since the beginning of the preparation
-  std::optional<double> secondsLeft;   ///< estimated from the passes so far; nothing before the first
+  std::optional<double> secondsLeft;   ///< estimated; nothing before the first pass, but with a time budget
   double fraction = 0;                 ///< of the budget that is spent, in [0, 1]
   PassStats stats;                     ///< of this render's passes
   const Film* film = nullptr;          ///< for what the watcher wants to know of it (noise, a snapshot); between passes
