@@ -37,12 +37,12 @@ std::string_view WhyPathsFindAll(const SceneFacts& facts, int maxDepth) {
 /// As many rays a pass as so many camera paths a pixel take: quiet places then have a quarter of the mean at least.
 constexpr int kCameraSamples = 4;
 
-IntegratorChoice ChoosePath(std::string_view reason, const IntegratorOptions& options) {
+IntegratorChoice ChoosePath(std::string_view reason, const IntegratorOptions& options, int64_t pilotPaths = 0) {
   const int samples = options.cameraSamples.value_or(kCameraSamples);
   return {"path",
           fmt::format("{}; a pass takes as long as {} camera paths a pixel, of which noisy places get more", reason,
                       samples),
-          nullptr, samples};
+          nullptr, samples, pilotPaths};
 }
 
 /// As few digits as tell.
@@ -62,11 +62,13 @@ IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& o
       "by a pilot {} of the light seen comes in ways that paths find seldom; photons lower the variance of a "
       "pass {} times",
       Percent(rare.share), Digits(rare.Gain()));
-  if (rare.share == 0) return ChoosePath("a pilot of light paths met no light that paths find seldom", options);
-  if (rare.Gain() < kCostOfPhotons) return ChoosePath(finding + ", less than they cost", options);
+  const int64_t withGuide = kRareLightPaths + guided.guide->PilotPhotons();
+  if (rare.share == 0)
+    return ChoosePath("a pilot of light paths met no light that paths find seldom", options, withGuide);
+  if (rare.Gain() < kCostOfPhotons) return ChoosePath(finding + ", less than they cost", options, withGuide);
   if (options.direct.technique != DirectTechnique::Mis)
-    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}};
-  return {"hybrid", finding, guided.guide, {}};
+    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}, kRareLightPaths};
+  return {"hybrid", finding, guided.guide, {}, kRareLightPaths};
 }
 
 bool IsLeftToDapple(std::string_view requested, std::string_view fromScene) {

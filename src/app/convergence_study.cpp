@@ -1,7 +1,6 @@
 #include "src/app/convergence_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -141,7 +140,7 @@ class StudyRunner {
     budget.seconds = options_.referenceSeconds;
     RenderHooks hooks;
     hooks.stop = &stop_;
-    const RenderResult result = Render(scene, kReferenceSeed, *plan.integrator, film, budget, hooks);
+    const RenderResult result = Render(scene, kReferenceSeed, *plan.integrator, film, budget, hooks, plan.seconds);
     if (film.PassCount() == 0) throw Error("stopped before the reference had a pass; no report is written");
     ReferenceInfo& info = study_.convergence.reference;
     info.source = fmt::format("{}, {} in {}", plan.choice.name, FormatNumberOf(film.PassCount(), "pass", "passes"),
@@ -155,13 +154,10 @@ class StudyRunner {
   void RunContender(size_t index, int seed, bool keepsPictures, const ErrorMeter& meter) {
     Contender& contender = study_.convergence.contenders[index];
     const Scene& scene = SceneOf(requested_[index], contender.strategy);
-    // The rule behind "auto" may look at the scene for a while, and that is a part of what it costs.
-    const auto begin = std::chrono::steady_clock::now();
     const RenderPlan plan = PlanOf(requested_[index], scene, seed);
-    const double planSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     Film film = FilmOf(scene);
     const ConvergenceRun run = RunWithSnapshots(scene, static_cast<uint64_t>(int64_t{seed}), *plan.integrator, times_,
-                                                film, {}, &stop_, planSeconds);
+                                                film, {}, &stop_, plan.seconds);
     if (run.stopped) return;
     SeedRun result{seed, run.prepareSeconds, run.seconds, run.snapshotSeconds, run.passes, {}};
     for (const Snapshot& snapshot : run.snapshots) {

@@ -84,7 +84,7 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
   fmt::print("rays      {} ({}): {} camera, {} shadow, {} photon, {} probe\n", count(stats.Rays()),
              Rate(stats.Rays(), result.seconds), count(stats.cameraRays), count(stats.shadowRays),
              count(stats.photonRays), count(stats.probeRays));
-  if (stats.photonsEmitted > 0) {
+  if (stats.photonsEmitted > 0 || needs.preparation.pilotPaths > 0) {
     fmt::print("photons   {} emitted ({}), {} stored; {} more in pilots\n", count(stats.photonsEmitted),
                Rate(stats.photonsEmitted, result.seconds), count(stats.photonsStored),
                count(needs.preparation.pilotPaths));
@@ -199,7 +199,7 @@ RenderResult RenderWithProgress(const RenderOptions& options, const Scene& scene
   BetweenPasses betweenPasses(options, origin, checkpoint);
   const RenderHooks hooks{.onProgress = std::ref(betweenPasses), .stop = &signals.Flag()};
   const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
-  return Render(scene, seed, *plan.integrator, film, plan.budget, hooks);
+  return Render(scene, seed, *plan.integrator, film, plan.budget, hooks, plan.seconds);
 }
 
 /// False, with a word, where it fails: then the picture can still be written.
@@ -283,7 +283,8 @@ int RunRender(RenderOptions options) {
   if (!options.isQuiet) PrintStart(options, scene, plan);
   if (options.resumes) Resume(options, plan, checkpoint, &film);
   const RenderResult result = RenderWithProgress(options, scene, plan, origin, signals, checkpoint, film);
-  const RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
+  RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
+  needs.preparation.pilotPaths += plan.choice.pilotPaths;
   return Finish(options, origin, result, needs, scene, film, signals.Signal(), checkpoint);
 }
 

@@ -1,6 +1,7 @@
 #include "src/app/scene_options.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -319,6 +320,7 @@ LoadedScene Load(const SceneOptions& options, Diagnostics& diagnostics) {
 }
 
 RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics) {
+  const auto begin = std::chrono::steady_clock::now();
   const RenderSettings& settings = scene.Settings();
   RenderPlan plan;
   plan.seed = Either(options.seed, settings.seed).value_or(0);
@@ -347,6 +349,7 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   }
   plan.integrator = MakeIntegrator(plan.choice.name, plan.options);
   SetBudget(settings, options, &plan);
+  plan.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }
 

@@ -81,6 +81,7 @@ struct RenderPlan {
   RenderBudget budget;
   std::string budgetReason;  ///< "the command line's", ...
   int seed = 0;
+  double seconds = 0;  ///< that making it took: the rule behind "auto" may look at the scene for a while
 };
 
 /// The command line's values, else the scene's, else the integrator's. Warns of an integrator of the scene's that

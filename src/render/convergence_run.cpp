@@ -17,12 +17,11 @@ double SecondsSince(Clock::time_point begin) { return std::chrono::duration<doub
 /// Watches a render: decides when a snapshot is due and when the time is up, by a clock without its own work.
 class SnapshotTaker {
  public:
-  SnapshotTaker(const std::vector<double>& times, double secondsBefore, ConvergenceRun* run)
-      : times_(times), secondsBefore_(secondsBefore), run_(run) {}
+  SnapshotTaker(const std::vector<double>& times, ConvergenceRun* run) : times_(times), run_(run) {}
 
   /// True where the render shall end: no room is left for another pass, or a stop is asked for.
   bool OnProgress(const RenderProgress& progress, bool isStopAsked) {
-    const double seconds = secondsBefore_ + progress.seconds - pausedSeconds_;
+    const double seconds = progress.seconds - pausedSeconds_;
     const double passSeconds = seconds - run_->seconds;
     run_->seconds = seconds;
     run_->passes = progress.passesDone;
@@ -52,7 +51,6 @@ class SnapshotTaker {
   }
 
   const std::vector<double>& times_;
-  double secondsBefore_;
   ConvergenceRun* run_;
   double pausedSeconds_ = 0, previousPassSeconds_ = 0;
   int nextTime_ = 0;  ///< the first that has not been reached
@@ -73,7 +71,7 @@ ConvergenceRun RunWithSnapshots(const Scene& scene, uint64_t seed, Integrator& i
                                 double secondsBefore) {
   assert(!times.empty() && std::is_sorted(times.begin(), times.end()) && film.PassCount() == 0);
   ConvergenceRun run;
-  SnapshotTaker taker(times, secondsBefore, &run);
+  SnapshotTaker taker(times, &run);
   std::atomic<bool> isOver{false};
   const auto isStopAsked = [&] { return stop && stop->load(std::memory_order_relaxed); };
   RenderHooks hooks;
@@ -89,7 +87,7 @@ ConvergenceRun RunWithSnapshots(const Scene& scene, uint64_t seed, Integrator& i
   // The clock of the driver would count the snapshots; the end comes from here.
   RenderBudget budget;
   budget.passes = std::numeric_limits<int>::max();
-  run.prepareSeconds = secondsBefore + Render(scene, seed, integrator, film, budget, hooks).prepareSeconds;
+  run.prepareSeconds = Render(scene, seed, integrator, film, budget, hooks, secondsBefore).prepareSeconds;
   return run;
 }
 

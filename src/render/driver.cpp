@@ -17,10 +17,12 @@ namespace {
 
 class Stopwatch {
  public:
-  double Seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  explicit Stopwatch(double secondsBefore) : secondsBefore_(secondsBefore) {}
+  double Seconds() const { return secondsBefore_ + std::chrono::duration<double>(Clock::now() - start_).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  double secondsBefore_;
   Clock::time_point start_ = Clock::now();
 };
 
@@ -111,9 +113,9 @@ RenderProgress Measure(const RenderBudget& budget, const Film& film, double elap
 }  // namespace
 
 RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, Film& film, const RenderBudget& budget,
-                    const RenderHooks& hooks) {
+                    const RenderHooks& hooks, double secondsBefore) {
   assert(budget.passes || budget.seconds || budget.error);
-  const Stopwatch watch;
+  const Stopwatch watch(secondsBefore);
   PassClock clock;
   ErrorWatch error(budget.error, scene.Settings().exposure);
   RenderResult result;

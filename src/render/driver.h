@@ -25,9 +25,9 @@ namespace dapple {
 struct RenderBudget {
   /// Passes that the film shall hold in the end, >= 1: `firstPass` to firstPass + passes - 1.
   std::optional<int> passes;
-  /// Wall-clock seconds from the beginning of the preparation, > 0. No pass begins whose end is foreseen (from the
-  /// passes before it) to lie beyond; one pass is always rendered. So it is kept to within the unsteadiness of one
-  /// pass.
+  /// Wall-clock seconds from the beginning of the preparation (with those before it), > 0. No pass begins whose end is
+  /// foreseen (from the passes before it) to lie beyond; one pass is always rendered. So it is kept to within the
+  /// unsteadiness of one pass.
   std::optional<double> seconds;
   int firstPass = 0;  ///< >= 0; other than 0 where a render is split into ranges of passes
   /// What the estimated error (error_estimate.h) is to fall below, > 0. It is looked at where `IsErrorDue` says so, so
@@ -39,7 +39,7 @@ struct RenderBudget {
 /// Where a render stands.
 struct RenderProgress {
   int passesDone = 0;                  ///< in the film
-  double seconds = 0;                  ///< since the beginning of the preparation
+  double seconds = 0;                  ///< since the beginning of the preparation, with those before it
   std::optional<double> secondsLeft;   ///< estimated; nothing before the first pass, but with a time budget
   double fraction = 0;                 ///< of the budget that is spent, in [0, 1]
   PassStats stats;                     ///< of this render's passes
@@ -67,8 +67,9 @@ struct RenderResult {
 /// Prepares the integrator and adds to the film the passes of the budget that it does not hold yet, in rising order. A
 /// film that already holds passes must come from the same scene, seed and integrator, and its passes must be of the
 /// budget, which counts them too. Extra channels of the film are those that `FilmChannels` (aov.h) names. Passes run
-/// one after another, each parallel in itself. Errors of the integrator are passed on.
+/// one after another, each parallel in itself. `secondsBefore` were spent on this render already (on choosing the
+/// integrator) and count as preparation, toward the budget too. Errors of the integrator are passed on.
 RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, Film& film, const RenderBudget& budget,
-                    const RenderHooks& hooks = {});
+                    const RenderHooks& hooks = {}, double secondsBefore = 0);
 
 }  // namespace dapple

@@ -8,7 +8,7 @@
 
 namespace dapple {
 
-/// What a render needed beside rays: of its scene, and of its integrator's preparation.
+/// What a render needed beside rays: of its scene, and of its integrator's preparation, its choice included.
 struct RenderNeeds {
   SceneResources scene;
   PreparationUse preparation;

@@ -72,6 +72,35 @@ TEST_F(Program, StatisticsCountWhatWasDone) {
   EXPECT_EQ(Run("tiny.pbrt --passes 1 -o a.exr --stats missing/stats.json").exitCode, 1);
 }
 
+// What `auto` chooses by its pilot costs what the same by name costs, and the pilot: neither time nor paths of it are
+// given away, and the picture is the same.
+TEST_F(Program, StatisticsCountThePilotOfAuto) {
+  constexpr int kPilotPaths = 1 << 14;
+  WriteScene("tiny.pbrt");
+  // Glass under the floor, in the dark, leaves the light to paths, but the pilot must find that out.
+  const std::string dark = Read("tiny.pbrt");
+  const size_t ball = dark.find("Shape \"sphere\"");
+  Write("dark.pbrt", dark.substr(0, ball) + "Translate 0 -3 0\n" + dark.substr(ball));
+  const auto statistics = [&](const std::string& arguments) {
+    const ProgramResult result = Run(arguments + " --quiet --passes 2 --stats s.json");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return nlohmann::json::parse(Read("s.json"));
+  };
+  const auto hybrid = statistics("tiny.pbrt --integrator hybrid -o a.exr");
+  const auto chosen = statistics("tiny.pbrt --integrator auto -o b.exr");
+  EXPECT_EQ(chosen["integrator"], "hybrid");
+  EXPECT_EQ(chosen["photons"]["inPilots"], hybrid["photons"]["inPilots"].get<int>() + kPilotPaths);
+  EXPECT_TRUE(Read("a.exr") == Read("b.exr"));
+  const auto path = statistics("dark.pbrt --integrator path --camera-samples 4 -o a.exr");
+  const auto chosenPath = statistics("dark.pbrt --integrator auto -o b.exr");
+  EXPECT_EQ(chosenPath["integrator"], "path");
+  EXPECT_EQ(path["photons"]["inPilots"], 0);
+  EXPECT_GT(chosenPath["photons"]["inPilots"], kPilotPaths) << "with those that taught the guide in vain";
+  EXPECT_GT(chosenPath["prepareSeconds"], path["prepareSeconds"]);
+  EXPECT_GE(chosenPath["seconds"], chosenPath["prepareSeconds"]);
+  EXPECT_TRUE(Read("a.exr") == Read("b.exr"));
+}
+
 TEST_F(Program, ANameThatIsNoUtf8LosesNoStatistics) {
   WriteScene("caf\xe9.pbrt");
   const ProgramResult result = Run("'caf\xe9.pbrt' --quiet --integrator path --passes 1 -o a.exr --stats s.json");

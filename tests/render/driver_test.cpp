@@ -95,6 +95,20 @@ TEST(Driver, ThePictureIsTheMeanOfThePassesAndTheCountsAreTheirSum) {
   EXPECT_EQ(result.stats.photonsEmitted, 500);
 }
 
+TEST(Driver, SecondsSpentBeforeCountAsPreparation) {
+  const Scene scene = EmptyScene();
+  FakeIntegrator integrator;
+  Film film = SmallFilm();
+  std::vector<double> seconds;
+  const RenderHooks hooks{.onProgress = [&](const RenderProgress& progress) { seconds.push_back(progress.seconds); }};
+  const RenderResult result = Render(scene, 0, integrator, film, {.passes = {}, .seconds = 100}, hooks, 200);
+  EXPECT_EQ(result.passes, 1) << "the time was up before; one pass is always rendered";
+  EXPECT_GE(result.prepareSeconds, 200);
+  EXPECT_GE(result.seconds, result.prepareSeconds);
+  ASSERT_EQ(seconds.size(), 2u);
+  EXPECT_GE(seconds[0], 200);
+}
+
 TEST(Driver, ContinuesAFilmThatHoldsPasses) {
   const Scene scene = EmptyScene();
   Film atOnce = SmallFilm(), inParts = SmallFilm();
