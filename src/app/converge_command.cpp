@@ -140,10 +140,8 @@ void AddReferenceGroup(CLI::App* command, ConvergeOptions* options) {
       ->needs(file)
       ->type_name("E")
       ->group(group);
-  std::vector<std::string> names{"auto"};
-  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
   command->add_option("--reference-integrator", options->referenceIntegrator, "What renders it; by default auto")
-      ->check(CLI::IsMember(names).description(""))
+      ->check(CLI::IsMember(IntegratorChoices()).description(""))
       ->excludes(file)
       ->type_name("NAME")
       ->group(group);
@@ -160,13 +158,11 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
   CLI::App* const command = program.add_subcommand("converge", "Compare algorithms: error against time, as a page");
   const auto options = std::make_shared<ConvergeOptions>();
   command->add_option("scenes", options->scenes, "Scenes: .pbrt or .pbrt.gz files")->required()->type_name("FILE");
-  std::vector<std::string> names{"auto"};
-  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
   command->add_option("--integrators", options->integrators, "Which to compare, as in path,sppm")
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember(names).description(""))
+      ->check(CLI::IsMember(IntegratorChoices()).description(""))
       ->type_name("A,B,...");
   command->add_option("--time", options->scene.seconds, "How long each renders, with each seed")
       ->required()

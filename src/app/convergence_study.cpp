@@ -19,6 +19,7 @@
 #include "src/render/convergence_run.h"
 #include "src/render/memory_needs.h"
 #include "src/render/output.h"
+#include "src/sampling/seed.h"
 
 namespace dapple {
 
@@ -140,7 +141,8 @@ class StudyRunner {
     budget.seconds = options_.referenceSeconds;
     RenderHooks hooks;
     hooks.stop = &stop_;
-    const RenderResult result = Render(scene, kReferenceSeed, *plan.integrator, film, budget, hooks, plan.seconds);
+    const RenderResult result =
+        Render(scene, SeedFrom(kReferenceSeed), *plan.integrator, film, budget, hooks, plan.seconds);
     if (film.PassCount() == 0) throw Error("stopped before the reference had a pass; no report is written");
     ReferenceInfo& info = study_.convergence.reference;
     info.source = fmt::format("{}, {} in {}", plan.choice.name, FormatNumberOf(film.PassCount(), "pass", "passes"),
@@ -156,8 +158,8 @@ class StudyRunner {
     const Scene& scene = SceneOf(requested_[index], contender.strategy);
     const RenderPlan plan = PlanOf(requested_[index], scene, seed);
     Film film = FilmOf(scene);
-    const ConvergenceRun run = RunWithSnapshots(scene, static_cast<uint64_t>(int64_t{seed}), *plan.integrator, times_,
-                                                film, {}, &stop_, plan.seconds);
+    const ConvergenceRun run =
+        RunWithSnapshots(scene, SeedFrom(seed), *plan.integrator, times_, film, {}, &stop_, plan.seconds);
     if (run.stopped) return;
     SeedRun result{seed, run.prepareSeconds, run.seconds, run.snapshotSeconds, run.passes, {}};
     for (const Snapshot& snapshot : run.snapshots) {

@@ -1,7 +1,5 @@
 // `dapple emit`: the rays that a scene's lights emit, as a table.
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -36,8 +34,7 @@ struct EmitCommandOptions {
 using RayFormat = std::string (*)(const Scene&, const EmittedRays&);
 
 RayFormat FormatOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = LowerCaseExtension(path);
   if (extension == ".csv") return RaysToCsv;
   if (extension == ".json") return RaysToJson;
   if (extension == ".ply") return RaysToPly;

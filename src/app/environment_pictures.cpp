@@ -8,6 +8,7 @@
 #include "src/base/parallel.h"
 #include "src/image/false_color.h"
 #include "src/sampling/sampler.h"
+#include "src/sampling/seed.h"
 
 namespace dapple {
 
@@ -122,7 +123,7 @@ Image SamplesPicture(const EnvironmentMap& map, int count, int seed) {
   });
   CompressBrightness(&picture);
   for (int i = 0; i < count; ++i) {
-    Sampler sampler = Sampler::ForLightPath(static_cast<uint64_t>(int64_t{seed}), i, 0, count);
+    Sampler sampler = Sampler::ForLightPath(SeedFrom(seed), i, 0, count);
     const Vec2d p = EnvironmentSquareAt(mapping, map.Sample(sampler.Get2D()));
     DrawDot(Vec2d(p.x * size.x, p.y * size.y), &picture);
   }

@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "integrators/photon_shooting.h"
 #include "src/app/command.h"
 #include "src/app/format.h"
 #include "src/app/memory.h"
 #include "src/app/scene_options.h"
 #include "src/base/parallel.h"
+#include "src/sampling/seed.h"
 
 namespace dapple {
 
@@ -114,7 +114,7 @@ int RunInfo(const SceneOptions& options) {
   const LoadedScene loaded = Load(options, diagnostics);
   const int64_t loadedBytes = PeakMemoryBytes();
   const RenderPlan plan = MakePlan(*loaded.scene, options, diagnostics);
-  const PassForecast forecast = plan.integrator->Forecast(*loaded.scene, static_cast<uint64_t>(int64_t{plan.seed}));
+  const PassForecast forecast = plan.integrator->Forecast(*loaded.scene, SeedFrom(plan.seed));
   PrintLine("scene", options.scene);
   PrintLine("format", fmt::format("pbrt version {}: {}", loaded.version, loaded.versionReason));
   PrintContents(*loaded.scene);

@@ -26,6 +26,7 @@
 #include "src/render/memory_needs.h"
 #include "src/render/snapshots.h"
 #include "src/render/statistics.h"
+#include "src/sampling/seed.h"
 
 namespace dapple {
 
@@ -127,9 +128,8 @@ Film EmptyFilm(const RenderOptions& options, const RenderSettings& settings, con
 
 void CheckMemory(const RenderOptions& options, const Scene& scene, const RenderPlan& plan) {
   if (!options.memoryLimit) return;
-  const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
-  const MemoryNeeds needs =
-      EstimateMemory(scene, options.aovs, *plan.integrator, plan.options, seed, TracksBlur(options, plan));
+  const MemoryNeeds needs = EstimateMemory(scene, options.aovs, *plan.integrator, plan.options, SeedFrom(plan.seed),
+                                           TracksBlur(options, plan));
   RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs);
 }
 
@@ -198,8 +198,7 @@ RenderResult RenderWithProgress(const RenderOptions& options, const Scene& scene
                                 Film& film) {
   BetweenPasses betweenPasses(options, origin, checkpoint);
   const RenderHooks hooks{.onProgress = std::ref(betweenPasses), .stop = &signals.Flag()};
-  const auto seed = static_cast<uint64_t>(int64_t{plan.seed});
-  return Render(scene, seed, *plan.integrator, film, plan.budget, hooks, plan.seconds);
+  return Render(scene, SeedFrom(plan.seed), *plan.integrator, film, plan.budget, hooks, plan.seconds);
 }
 
 /// False, with a word, where it fails: then the picture can still be written.

@@ -8,7 +8,6 @@
 #include <new>
 #include <sstream>
 #include <string_view>
-#include <vector>
 
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
@@ -19,6 +18,7 @@
 #include "src/io/build_context.h"
 #include "src/io/pbrt_parser.h"
 #include "src/io/scene_hash.h"
+#include "src/sampling/seed.h"
 
 namespace dapple {
 
@@ -113,8 +113,7 @@ const char* const kRenderGroup = "Rendering (what is not given is the scene's)";
 
 void AddBudgetGroup(CLI::App* command, SceneOptions* options) {
   const std::string group = kRenderGroup;
-  std::vector<std::string> names{"auto"};
-  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
+  const std::vector<std::string> names = IntegratorChoices();
   command->add_option("--integrator", options->integrator, fmt::format("{}", fmt::join(names, ", ")))
       ->check(CLI::IsMember(names).description(""))
       ->type_name("NAME")
@@ -259,6 +258,12 @@ std::string CheckPositive(const std::string& text) {
   return isPositive ? "" : fmt::format("expected a number above 0, not '{}'", text);
 }
 
+std::vector<std::string> IntegratorChoices() {
+  std::vector<std::string> names{"auto"};
+  for (const std::string_view name : IntegratorNames()) names.emplace_back(name);
+  return names;
+}
+
 std::string SceneName(const std::string& path) {
   std::filesystem::path name = std::filesystem::path(path).filename();
   if (name.extension() == ".gz") name = name.stem();
@@ -331,7 +336,7 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.options.kernel = options.kernel;
   plan.options.guideEmission = !options.noGuide;
   plan.options.direct = {options.direct, options.lightSamples};
-  plan.choice = ResolveIntegrator(options.integrator, scene, plan.options, static_cast<uint64_t>(int64_t{plan.seed}));
+  plan.choice = ResolveIntegrator(options.integrator, scene, plan.options, SeedFrom(plan.seed));
   plan.options.guide = plan.choice.guide;
   if (plan.choice.name == "path") {
     plan.options.cameraSamples = Either(options.cameraSamples, plan.choice.cameraSamples);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -26,6 +27,9 @@ inline constexpr int kMaxThreads = 1024;
 
 /// What is wrong with an option's `text` as a finite number above 0; empty where nothing is.
 std::string CheckPositive(const std::string& text);
+
+/// Names of integrators as the command line takes them: "auto" and all that `MakeIntegrator` knows.
+std::vector<std::string> IntegratorChoices();
 
 /// "ring.pbrt" and "ring.pbrt.gz" are both "ring".
 std::string SceneName(const std::string& path);

@@ -12,6 +12,7 @@
 #include "src/base/parallel.h"
 #include "src/photons/light_path.h"
 #include "src/render/json_text.h"
+#include "src/sampling/seed.h"
 
 namespace dapple {
 
@@ -45,7 +46,7 @@ void CheckLight(const Scene& scene, const EmitOptions& options) {
 
 std::optional<EmissionSample> EmitOne(const Scene& scene, const EmissionSampler& emission, const EmitOptions& options,
                                       int64_t path) {
-  Sampler sampler = Sampler::ForLightPath(static_cast<uint64_t>(int64_t{options.seed}), path, 0, options.count);
+  Sampler sampler = Sampler::ForLightPath(SeedFrom(options.seed), path, 0, options.count);
   if (!options.light) return EmitPhoton(emission, sampler);
   const Light& light = *scene.Lights()[static_cast<size_t>(*options.light)];
   const std::optional<LeSample> le = light.Sample_Le(EmissionNumbers(sampler));

@@ -16,9 +16,7 @@ namespace {
 enum class Format { kExr, kPng };
 
 Format FormatOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = LowerCaseExtension(path);
   if (extension == ".exr") return Format::kExr;
   if (extension == ".png") return Format::kPng;
   throw Error(FileLocation(path),
@@ -26,6 +24,13 @@ Format FormatOf(const std::string& path) {
 }
 
 }  // namespace
+
+std::string LowerCaseExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
 
 ImageMetadata ToMetadata(const RenderRecord& record) {
   ImageMetadata metadata{

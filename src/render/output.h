@@ -32,6 +32,9 @@ struct RenderRecord {
 /// The record under the names of its members.
 ImageMetadata ToMetadata(const RenderRecord& record);
 
+/// ".exr" of "Picture.EXR": what tells formats.
+std::string LowerCaseExtension(const std::string& path);
+
 /// Throws `Error` where no file can be written to `path`: its folder is missing or not writable, or it is a folder
 /// itself.
 void CheckFolder(const std::string& path);

@@ -2,7 +2,6 @@
 // the film between passes, so it changes nothing of what comes after.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "src/render/driver.h"
