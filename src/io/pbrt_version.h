@@ -1,7 +1,7 @@
 // Finds out which version of the pbrt format a file is in, 3 or 4, from the words it uses.
 //
 // Each word that only one version knows speaks for it, once and with a weight; the heavier side wins, a tie is
-// version 4.
+// version 4. A WorldEnd weighs less than any such name: it may be left behind in a file that was made into version 4.
 #pragma once
 
 #include <string>
@@ -50,12 +50,20 @@ class PbrtVersionVotes {
   int Version() const;
   /// The weightiest words for `version`, for people; "nothing in the file tells ..." where there are none.
   std::string Reason(int version) const;
+  /// Warns where the file, read as `version`, holds a name or directive that the other version alone has: at WorldEnd,
+  /// or else at the weightiest one. Types of parameters ("point") are read alike, and give no warning.
+  void WarnOfContradiction(int version, Diagnostics& diagnostics) const;
 
  private:
   struct Vote {
     int version, weight;
+    WordKind kind;
     std::string text;
+    FileLocation location;
   };
+  /// The weightiest first.
+  std::vector<Vote> VotesFor(int version) const;
+
   std::vector<Vote> votes_;
   std::vector<bool> seen_;
 };

@@ -67,7 +67,7 @@ struct InstanceDescription {
 
 struct SceneDescription {
   int version = 4;                     ///< 3 or 4: defaults and some meanings differ.
-  std::string versionReason;           ///< Why, for people: 'WorldEnd (scene.pbrt:20:1)', "asked for".
+  std::string versionReason;           ///< Why, for people: 'film "rgb" (scene.pbrt:2:1)', "asked for".
   std::filesystem::path file, folder;  ///< Of the main scene; `folder` is where file names are searched.
 
   CameraDescription camera;

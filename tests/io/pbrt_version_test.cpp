@@ -24,11 +24,57 @@ int VersionOf(WordKind kind, const std::string& word) {
   return votes.Reason(4) != "nothing in the file tells the version" ? 4 : 0;
 }
 
-TEST(PbrtVersion, WorldEndDecides) {
-  const SceneDescription scene =
-      Parse("WorldBegin\nMaterial \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0]\nWorldEnd");
+/// The warnings on the way, a line each.
+std::string WarningsOf(const std::string& text, int version = 0) {
+  WarningList warnings;
+  ParsePbrtString(text, "a.pbrt", "", {version}, warnings.diagnostics);
+  std::string lines;
+  for (const std::string& line : warnings.lines) lines += line + "\n";
+  return lines;
+}
+
+TEST(PbrtVersion, WorldEndDecidesOverHabits) {
+  const SceneDescription scene = Parse(
+      "WorldBegin\nTexture \"t\" \"spectrum\" \"constant\"\nShape \"sphere\" \"point3 P\" [0 0 0] \"vector3 v\" [0 0 "
+      "0] \"point2 uv\" [0 0] \"bool b\" true\nWorldEnd");
   EXPECT_EQ(scene.version, 3);
   EXPECT_EQ(scene.versionReason, "WorldEnd (a.pbrt:4:1)");
+}
+
+TEST(PbrtVersion, NamesOutweighAStrayWorldEnd) {
+  const std::string names[] = {"Film \"rgb\" WorldBegin",
+                               "Sampler \"zsobol\" WorldBegin",
+                               "ColorSpace \"rec2020\" WorldBegin",
+                               "Option \"integer seed\" 1 WorldBegin",
+                               "WorldBegin Material \"diffuse\"",
+                               "WorldBegin Attribute \"shape\" \"float radius\" 1",
+                               "WorldBegin LightSource \"infinite\" \"string filename\" \"x.exr\""};
+  for (const std::string& text : names) EXPECT_EQ(Parse(text + " WorldEnd").version, 4) << text;
+  EXPECT_EQ(WarningsOf("Film \"rgb\"\nWorldBegin\nMaterial \"diffuse\"\nWorldEnd"),
+            "a.pbrt:4:1: warning: WorldEnd is of pbrt-v3, but the file is read as version 4 because of film \"rgb\" "
+            "(a.pbrt:1:1), material \"diffuse\" (a.pbrt:3:1); --pbrt-version 3 reads it as version 3\n");
+}
+
+TEST(PbrtVersion, NamesOfVersion4InAFileOfVersion3AreTold) {
+  const std::string text =
+      "Film \"image\"\nWorldBegin\nMaterial \"matte\"\nLightSource \"infinite\" \"string filename\" \"x\"\nWorldEnd";
+  EXPECT_EQ(Parse(text).version, 3);
+  EXPECT_EQ(
+      WarningsOf(text),
+      "a.pbrt:4:24: warning: light's \"filename\" is of pbrt-v4, but the file is read as version 3 because of film "
+      "\"image\" (a.pbrt:1:1), material \"matte\" (a.pbrt:3:1), WorldEnd (a.pbrt:5:1); --pbrt-version 4 reads it as "
+      "version 4\n");
+}
+
+TEST(PbrtVersion, OnlyContradictionsAreTold) {
+  EXPECT_EQ(WarningsOf("Film \"image\" WorldBegin Material \"matte\" Shape \"sphere\" \"point3 P\" [0 0 0] WorldEnd"),
+            "");
+  EXPECT_EQ(WarningsOf("Film \"rgb\" WorldBegin LightSource \"infinite\" \"integer samples\" 4 \"bool b\" \"true\""),
+            "");
+  EXPECT_EQ(WarningsOf("Film \"rgb\" WorldBegin Material \"diffuse\" \"color reflectance\" [1 1 1]"), "");
+  // Whoever says the version is not told.
+  EXPECT_EQ(WarningsOf("Film \"rgb\" WorldBegin WorldEnd", 4), "");
+  EXPECT_EQ(WarningsOf("Film \"rgb\" WorldBegin WorldEnd", 3), "");
 }
 
 TEST(PbrtVersion, WithoutWorldEndItIsVersion4) {
