@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "src/io/build_values.h"
+#include "src/io/value_bounds.h"
 #include "src/materials/bump.h"
 #include "src/materials/material.h"
 #include "src/materials/roughness.h"
@@ -16,12 +17,23 @@ struct MaterialInput {
   const MaterialDescription& material;
 
   const ParameterList& Params() const { return material.params; }
-  /// The material's colour or number of that name, as a texture; never null. Throws as `Values::GetColor`.
-  ColorTexturePtr ColorOf(std::string_view name, double fallback) const {
+  /// The material's share of light or number of that name, as a texture; never null. Throws as `Values::GetColor`.
+  /// Materials clamp shares, times `scale`, to [0, 1]: warns where that changes a constant one.
+  ColorTexturePtr ShareOf(std::string_view name, double fallback, double scale = 1) const {
+    WarnOfClampedShare(Params(), name, scale, values.Context().diagnostics);
     return values.GetColor(Params(), name, Color(static_cast<float>(fallback)));
   }
   FloatTexturePtr FloatOf(std::string_view name, double fallback) const {
     return values.GetFloat(Params(), name, fallback);
+  }
+  /// A roughness; null where there is none of that name. Throws `Error` where a constant one is negative.
+  FloatTexturePtr FindRoughness(std::string_view name) const {
+    CheckBounds(Params(), name, kNotNegative);
+    return values.FindFloat(Params(), name);
+  }
+  FloatTexturePtr RoughnessOf(std::string_view name, double fallback) const {
+    CheckBounds(Params(), name, kNotNegative);
+    return FloatOf(name, fallback);
   }
 };
 

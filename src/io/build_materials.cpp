@@ -50,8 +50,10 @@ std::unique_ptr<Material> BuildMix(const MaterialInput& in, Chain* chain) {
     const std::vector<std::string> names = params.GetStringArray("materials", 2);
     const FileLocation at = params.LocationOf("materials", location);
     const auto first = BuildNamed(in.values, names[0], at, chain), second = BuildNamed(in.values, names[1], at, chain);
+    WarnOfClampedShare(params, "amount", 1, in.values.Context().diagnostics);
+    const FloatTexturePtr amount = in.FloatOf("amount", 0.5);
     // In pbrt-v4 the amount is that of the second.
-    return std::make_unique<MixMaterial>(second, first, std::make_shared<GrayTexture>(in.FloatOf("amount", 0.5)));
+    return std::make_unique<MixMaterial>(second, first, std::make_shared<GrayTexture>(amount));
   }
   std::shared_ptr<const Material> parts[2];
   for (int i = 0; i < 2; ++i) {
@@ -61,7 +63,7 @@ std::unique_ptr<Material> BuildMix(const MaterialInput& in, Chain* chain) {
                                         in.values.Context().IsV3() ? parameter : "materials"));
     parts[i] = BuildNamed(in.values, params.GetString(parameter, ""), params.LocationOf(parameter, location), chain);
   }
-  return std::make_unique<MixMaterial>(parts[0], parts[1], in.ColorOf("amount", 0.5));
+  return std::make_unique<MixMaterial>(parts[0], parts[1], in.ShareOf("amount", 0.5));
 }
 
 std::unique_ptr<Material> Build(Values& values, const MaterialDescription& material, Chain* chain) {
@@ -87,10 +89,11 @@ float ConstantOr(const FloatTexturePtr& texture, float fallback) {
 
 /// Disney's material by its largest part: metal, glass or a coated diffuse body.
 std::unique_ptr<Material> BuildDisneyStandIn(const MaterialInput& in) {
-  const ColorTexturePtr color = in.ColorOf("color", 0.5);
+  const ColorTexturePtr color = in.ShareOf("color", 0.5);
   // GGX's alpha is the square of Disney's roughness.
-  const FloatTexturePtr disneyRoughness = in.FloatOf("roughness", 0.5);
+  const FloatTexturePtr disneyRoughness = in.RoughnessOf("roughness", 0.5);
   const Roughness roughness(MakeScale(disneyRoughness, disneyRoughness), RoughnessRemap::None);
+  CheckBounds(in.Params(), "eta", kPositive);
   const FloatTexturePtr eta = in.FloatOf("eta", 1.5);
   if (ConstantOr(in.FloatOf("metallic", 0), 0) > 0.5f) return std::make_unique<ConductorMaterial>(color, roughness);
   if (ConstantOr(in.FloatOf("spectrans", 0), 0) > 0.5f) return std::make_unique<DielectricMaterial>(eta, roughness);
@@ -110,9 +113,9 @@ SurfaceDetailPtr BuildDetail(const MaterialInput& in) {
 }
 
 Roughness BuildRoughness(const MaterialInput& in, double fallback, RoughnessRemap remap, const std::string& prefix) {
-  const FloatTexturePtr both = in.FloatOf(prefix + "roughness", fallback);
-  const FloatTexturePtr u = in.values.FindFloat(in.Params(), prefix + "uroughness");
-  const FloatTexturePtr v = in.values.FindFloat(in.Params(), prefix + "vroughness");
+  const FloatTexturePtr both = in.RoughnessOf(prefix + "roughness", fallback);
+  const FloatTexturePtr u = in.FindRoughness(prefix + "uroughness");
+  const FloatTexturePtr v = in.FindRoughness(prefix + "vroughness");
   return {u ? u : both, v ? v : both, remap};
 }
 
@@ -152,7 +155,7 @@ std::unique_ptr<Material> BuildStandIn(const MaterialInput& in) {
     result = BuildDisneyStandIn(in);
   } else if (type == "subsurface" || type == "kdsubsurface") {
     const bool hasKd = in.Params().Has("Kd");
-    result = std::make_unique<MatteMaterial>(in.ColorOf(hasKd ? "Kd" : "reflectance", 0.5), nullptr, BuildDetail(in));
+    result = std::make_unique<MatteMaterial>(in.ShareOf(hasKd ? "Kd" : "reflectance", 0.5), nullptr, BuildDetail(in));
   } else if (type == "hair") {
     const Color brown(0.2f, 0.1f, 0.05f);
     result = std::make_unique<MatteMaterial>(in.values.GetColor(in.Params(), "color", brown));

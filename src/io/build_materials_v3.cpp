@@ -25,26 +25,27 @@ FloatTexturePtr EtaOrIndex(const MaterialInput& in) {
 
 /// As pbrt-v3: of glass and substrate, "roughness" alone says nothing.
 Roughness TwoRoughnesses(const MaterialInput& in, double fallback) {
-  return WithDistribution(in, {in.FloatOf("uroughness", fallback), in.FloatOf("vroughness", fallback), Remap(in)});
+  return WithDistribution(in,
+                          {in.RoughnessOf("uroughness", fallback), in.RoughnessOf("vroughness", fallback), Remap(in)});
 }
 
 /// As pbrt-v3: of plastic and translucent, the gloss is isotropic.
 Roughness OneRoughness(const MaterialInput& in) {
-  return WithDistribution(in, {in.FloatOf("roughness", 0.1), Remap(in)});
+  return WithDistribution(in, {in.RoughnessOf("roughness", 0.1), Remap(in)});
 }
 
 std::unique_ptr<Material> BuildMatte(const MaterialInput& in) {
-  return std::make_unique<MatteMaterial>(in.ColorOf("Kd", 0.5), in.FloatOf("sigma", 0), BuildDetail(in));
+  return std::make_unique<MatteMaterial>(in.ShareOf("Kd", 0.5), in.FloatOf("sigma", 0), BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildPlastic(const MaterialInput& in) {
-  return std::make_unique<PlasticMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), OneRoughness(in),
+  return std::make_unique<PlasticMaterial>(in.ShareOf("Kd", 0.25), in.ShareOf("Ks", 0.25), OneRoughness(in),
                                            BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildTranslucent(const MaterialInput& in) {
-  return std::make_unique<TranslucentMaterial>(in.ColorOf("Kd", 0.25), in.ColorOf("Ks", 0.25), OneRoughness(in),
-                                               in.ColorOf("reflect", 0.5), in.ColorOf("transmit", 0.5),
+  return std::make_unique<TranslucentMaterial>(in.ShareOf("Kd", 0.25), in.ShareOf("Ks", 0.25), OneRoughness(in),
+                                               in.ShareOf("reflect", 0.5), in.ShareOf("transmit", 0.5),
                                                BuildDetail(in));
 }
 
@@ -60,15 +61,16 @@ Roughness GlassRoughness(const MaterialInput& in) {
 }
 
 std::unique_ptr<Material> BuildGlass(const MaterialInput& in) {
-  return std::make_unique<DielectricMaterial>(EtaOrIndex(in), GlassRoughness(in), in.ColorOf("Kr", 1),
-                                              in.ColorOf("Kt", 1), BuildDetail(in));
+  return std::make_unique<DielectricMaterial>(EtaOrIndex(in), GlassRoughness(in), in.ShareOf("Kr", 1),
+                                              in.ShareOf("Kt", 1), BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildMirror(const MaterialInput& in) {
-  return std::make_unique<MirrorMaterial>(in.ColorOf("Kr", 0.9), BuildDetail(in));
+  return std::make_unique<MirrorMaterial>(in.ShareOf("Kr", 0.9), BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildMetal(const MaterialInput& in) {
+  for (const char* name : {"eta", "k"}) CheckBounds(in.Params(), name, kNotNegative);
   const auto copper = [](const char* name) { return SpectrumToColorV3(NamedSpectrum(name)); };
   ColorTexturePtr eta = in.values.GetColor(in.Params(), "eta", copper("metal-Cu-eta"));
   ColorTexturePtr k = in.values.GetColor(in.Params(), "k", copper("metal-Cu-k"));
@@ -77,7 +79,7 @@ std::unique_ptr<Material> BuildMetal(const MaterialInput& in) {
 }
 
 std::unique_ptr<Material> BuildSubstrate(const MaterialInput& in) {
-  auto substrate = std::make_unique<SubstrateMaterial>(in.ColorOf("Kd", 0.5), in.ColorOf("Ks", 0.5),
+  auto substrate = std::make_unique<SubstrateMaterial>(in.ShareOf("Kd", 0.5), in.ShareOf("Ks", 0.5),
                                                        TwoRoughnesses(in, 0.1), BuildDetail(in));
   if (const float most = substrate->LargestUnscaledReflectance().value_or(1); most > 1) {
     in.values.Context().diagnostics.Warn(
@@ -91,11 +93,11 @@ std::unique_ptr<Material> BuildSubstrate(const MaterialInput& in) {
 
 std::unique_ptr<Material> BuildUber(const MaterialInput& in) {
   UberMaterial::Parameters parameters;
-  parameters.kd = in.ColorOf("Kd", 0.25);
-  parameters.ks = in.ColorOf("Ks", 0.25);
-  parameters.kr = in.ColorOf("Kr", 0);
-  parameters.kt = in.ColorOf("Kt", 0);
-  parameters.opacity = in.ColorOf("opacity", 1);
+  parameters.kd = in.ShareOf("Kd", 0.25);
+  parameters.ks = in.ShareOf("Ks", 0.25);
+  parameters.kr = in.ShareOf("Kr", 0);
+  parameters.kt = in.ShareOf("Kt", 0);
+  parameters.opacity = in.ShareOf("opacity", 1);
   parameters.eta = EtaOrIndex(in);
   parameters.roughness = WithDistribution(in, BuildRoughness(in, 0.1, Remap(in)));
   return std::make_unique<UberMaterial>(parameters, BuildDetail(in));

@@ -29,6 +29,8 @@ struct Metal {
 Metal BuildMetal(const MaterialInput& in, const std::string& prefix, const std::string& reflectanceName) {
   Metal metal;
   const std::string etaName = prefix + "eta", kName = prefix + "k";
+  for (const std::string& name : {etaName, kName}) CheckBounds(in.Params(), name, kNotNegative);
+  WarnOfClampedShare(in.Params(), reflectanceName, 1, in.values.Context().diagnostics);
   metal.eta = in.values.FindColor(in.Params(), etaName);
   metal.k = in.values.FindColor(in.Params(), kName);
   metal.reflectance = in.values.FindColor(in.Params(), reflectanceName);
@@ -46,14 +48,18 @@ Metal BuildMetal(const MaterialInput& in, const std::string& prefix, const std::
 
 /// What pbrt's random walk inside a coat needs; the closed form here has no medium and no limits.
 void LookUpLayerParameters(const MaterialInput& in) {
-  for (const char* name : {"maxdepth", "nsamples", "thickness", "twosided", "g"}) in.Params().Find(name);
+  in.Params().Find("twosided");
+  CheckBounds(in.Params(), "maxdepth", kNotNegative);
+  CheckBounds(in.Params(), "nsamples", kPositive);
+  CheckBounds(in.Params(), "thickness", kNotNegative);
+  CheckBounds(in.Params(), "g", {.least = -1, .most = 1});
   const ColorTexturePtr albedo = in.values.FindColor(in.Params(), "albedo");
   if (albedo && !(albedo->IsConstant() && albedo->Evaluate(TextureContext()).IsBlack()))
     WarnUnsupported(in.values.Context(), in.Params(), "albedo");
 }
 
 std::unique_ptr<Material> BuildDiffuse(const MaterialInput& in) {
-  return std::make_unique<MatteMaterial>(in.ColorOf("reflectance", 0.5), in.FloatOf("sigma", 0), BuildDetail(in));
+  return std::make_unique<MatteMaterial>(in.ShareOf("reflectance", 0.5), in.FloatOf("sigma", 0), BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildConductor(const MaterialInput& in) {
@@ -73,14 +79,16 @@ std::unique_ptr<Material> BuildThinDielectric(const MaterialInput& in) {
 }
 
 std::unique_ptr<Material> BuildDiffuseTransmission(const MaterialInput& in) {
-  const auto scale = static_cast<float>(in.Params().GetFloat("scale", 1));
-  return std::make_unique<DiffuseTransmissionMaterial>(in.ColorOf("reflectance", 0.25),
-                                                       in.ColorOf("transmittance", 0.25), scale, BuildDetail(in));
+  CheckBounds(in.Params(), "scale", kNotNegative);
+  const double scale = in.Params().GetFloat("scale", 1);
+  return std::make_unique<DiffuseTransmissionMaterial>(in.ShareOf("reflectance", 0.25, scale),
+                                                       in.ShareOf("transmittance", 0.25, scale),
+                                                       static_cast<float>(scale), BuildDetail(in));
 }
 
 std::unique_ptr<Material> BuildCoatedDiffuse(const MaterialInput& in) {
   LookUpLayerParameters(in);
-  return std::make_unique<CoatedDiffuseMaterial>(in.ColorOf("reflectance", 0.5), BuildRoughness(in, 0, Remap(in)),
+  return std::make_unique<CoatedDiffuseMaterial>(in.ShareOf("reflectance", 0.5), BuildRoughness(in, 0, Remap(in)),
                                                  GetUniformEta(in, "eta", 1.5), BuildDetail(in));
 }
 

@@ -5,6 +5,7 @@
 #include "src/io/build_textures.h"
 #include "src/io/nearest_name.h"
 #include "src/io/text_file.h"
+#include "src/io/value_bounds.h"
 #include "src/materials/named_spectra.h"
 #include "src/materials/procedural_textures.h"
 
@@ -28,6 +29,13 @@ const char* RgbSpaceName(RgbSpace space) {
 void CheckOneValue(const Parameter& parameter, int count) {
   if (count == 1) return;
   throw Error(parameter.location, fmt::format("parameter \"{}\" has {} values, expected one", parameter.name, count));
+}
+
+/// `of` says in messages which of the parameter's numbers it is.
+void CheckNumber(const Parameter& parameter, std::string_view of, double number, const ValueBounds& bounds) {
+  if (bounds.Contains(number)) return;
+  throw Error(parameter.location,
+              fmt::format("{} of parameter \"{}\" is {}, expected {}", of, parameter.name, number, bounds.ToString()));
 }
 
 [[noreturn]] void FailColorType(const Parameter& parameter) {
@@ -79,11 +87,14 @@ Color Values::ToColor(const Parameter& parameter, RgbUse use) const {
     case ParameterType::Blackbody:
       if (!isV3) {
         CheckOneValue(parameter, parameter.Count());
+        CheckNumber(parameter, "the temperature", numbers[0], kPositive);
         return BlackbodyV4(numbers[0]);
       }
       if (numbers.size() != 2)
         throw Error(parameter.location, fmt::format("parameter \"{}\" has {} numbers, expected two: kelvin and scale",
                                                     parameter.name, numbers.size()));
+      CheckNumber(parameter, "the temperature", numbers[0], kPositive);
+      CheckNumber(parameter, "the scale", numbers[1], kNotNegative);
       return BlackbodyV3(numbers[0]) * static_cast<float>(numbers[1]);
     case ParameterType::Spectrum:
       if (isV3) return SpectrumToColorV3(ToSpectrum(parameter));
@@ -164,10 +175,16 @@ FloatTexturePtr Values::GetFloat(const ParameterList& params, std::string_view n
 FloatTexturePtr Values::FindIndexOfRefraction(const ParameterList& params, std::string_view name) {
   const Parameter* parameter = params.Find(name);
   if (!parameter) return nullptr;
+  FloatTexturePtr eta;
   if (parameter->type == ParameterType::Spectrum)
-    return MakeConstant(static_cast<float>(ToSpectrum(*parameter)(kFraunhoferD)));
-  if (parameter->type == ParameterType::Rgb) return MakeConstant(ToColor(*parameter, RgbUse::kReflectance).g);
-  return FindFloat(params, name);
+    eta = MakeConstant(static_cast<float>(ToSpectrum(*parameter)(kFraunhoferD)));
+  else if (parameter->type == ParameterType::Rgb)
+    eta = MakeConstant(ToColor(*parameter, RgbUse::kReflectance).g);
+  else
+    eta = FindFloat(params, name);
+  if (parameter->type != ParameterType::Texture)
+    CheckNumber(*parameter, "the value", static_cast<double>(eta->Evaluate(TextureContext())), kPositive);
+  return eta;
 }
 
 std::string Values::FilePath(const Parameter& fileName) const {

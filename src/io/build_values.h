@@ -44,7 +44,8 @@ class Values {
 
   /// A colour without texture; emission has its own conversion (RgbUse), and must not be negative.
   Color GetConstantColor(const ParameterList& params, std::string_view name, const Color& fallback, RgbUse use) const;
-  /// One index of refraction: a number, a float texture, or a spectrum at the helium d line.
+  /// One index of refraction: a number, a float texture, or a spectrum at the helium d line. Throws `Error` where a
+  /// constant one is not above 0.
   FloatTexturePtr FindIndexOfRefraction(const ParameterList& params, std::string_view name);
   /// A spectrum parameter's function of the wavelength.
   Spectrum ToSpectrum(const Parameter& parameter) const;

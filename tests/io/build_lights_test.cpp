@@ -445,5 +445,14 @@ TEST(BuildLights, ErrorsHaveAPlace) {
   EXPECT_EQ(WorldError(R"(LightSource "point" "blackbody I" [3000 4000])", 4).substr(0, 18), "a.pbrt:5:21: error");
 }
 
+TEST(BuildLights, BlackbodiesAreWarmerThanNothing) {
+  EXPECT_EQ(WorldError(R"(LightSource "point" "blackbody I" [-3 1])", 3),
+            "a.pbrt:5:21: error: the temperature of parameter \"I\" is -3, expected more than 0");
+  EXPECT_EQ(WorldError(R"(LightSource "point" "blackbody I" [3000 -1])", 3),
+            "a.pbrt:5:21: error: the scale of parameter \"I\" is -1, expected 0 or more");
+  EXPECT_EQ(WorldError(R"(LightSource "point" "blackbody I" 0)", 4),
+            "a.pbrt:5:21: error: the temperature of parameter \"I\" is 0, expected more than 0");
+}
+
 }  // namespace
 }  // namespace dapple

@@ -1,4 +1,6 @@
 // Material statements of both versions: defaults and meanings, seen from the BSDFs they give.
+#include <fmt/format.h>
+
 #include "src/base/numerics.h"
 #include "src/image/image_io.h"
 #include "src/materials/fresnel.h"
@@ -291,6 +293,90 @@ NamedMaterial "m")"),
   EXPECT_EQ(error(R"(Material "conductor" "string distribution" "bekmann")"),
             "a.pbrt:5:22: error: unknown microfacet distribution \"bekmann\", expected one of ggx, beckmann, blinn, "
             "ashikhminshirley; did you mean \"beckmann\"?");
+}
+
+TEST(BuildMaterials, ValuesWithoutMeaningAreErrors) {
+  const std::pair<const char*, int> materials[] = {{R"("dielectric" "float eta" -1.5)", 4},
+                                                   {R"("dielectric" "float eta" 0)", 4},
+                                                   {R"("dielectric" "spectrum eta" [300 -1 900 -1])", 4},
+                                                   {R"("thindielectric" "float eta" 0)", 4},
+                                                   {R"("dielectric" "float roughness" -.1)", 4},
+                                                   {R"("dielectric" "float vroughness" -.1)", 4},
+                                                   {R"("conductor" "rgb eta" [1 -1 1])", 4},
+                                                   {R"("conductor" "rgb k" [1 1 -1])", 4},
+                                                   {R"("conductor" "spectrum k" [300 1 900 -1])", 4},
+                                                   {R"("conductor" "float uroughness" -1)", 4},
+                                                   {R"("coateddiffuse" "float eta" -1.5)", 4},
+                                                   {R"("coateddiffuse" "float roughness" -1)", 4},
+                                                   {R"("coateddiffuse" "float thickness" -1)", 4},
+                                                   {R"("coateddiffuse" "float g" 1.5)", 4},
+                                                   {R"("coateddiffuse" "float g" -1.5)", 4},
+                                                   {R"("coateddiffuse" "integer maxdepth" -1)", 4},
+                                                   {R"("coateddiffuse" "integer nsamples" 0)", 4},
+                                                   {R"("coatedconductor" "float interface.eta" 0)", 4},
+                                                   {R"("coatedconductor" "float interface.roughness" -1)", 4},
+                                                   {R"("coatedconductor" "float conductor.roughness" -1)", 4},
+                                                   {R"("coatedconductor" "rgb conductor.k" [-1 1 1])", 4},
+                                                   {R"("diffusetransmission" "float scale" -1)", 4},
+                                                   {R"("glass" "float index" -1.5)", 3},
+                                                   {R"("glass" "float eta" 0)", 3},
+                                                   {R"("glass" "float uroughness" -1)", 3},
+                                                   {R"("metal" "rgb eta" [-1 1 1])", 3},
+                                                   {R"("metal" "rgb k" [-1 1 1])", 3},
+                                                   {R"("metal" "float roughness" -1)", 3},
+                                                   {R"("plastic" "float roughness" -1)", 3},
+                                                   {R"("translucent" "float roughness" -1)", 3},
+                                                   {R"("substrate" "float vroughness" -1)", 3},
+                                                   {R"("uber" "float index" -1)", 3},
+                                                   {R"("uber" "float roughness" -1)", 3},
+                                                   {R"("matte" "blackbody Kd" [-3 1])", 3},
+                                                   {R"("matte" "blackbody Kd" [3000 -1])", 3},
+                                                   {R"("diffuse" "blackbody reflectance" 0)", 4}};
+  for (const auto& [material, version] : materials) {
+    const std::string text = std::string("Material ") + material;
+    const std::size_t column = text.find("\" \"") + 3;
+    EXPECT_EQ(WorldError(text + "\n" + Square(version), version).rfind(fmt::format("a.pbrt:5:{}: error: ", column), 0),
+              0u)
+        << text << ": " << WorldError(text + "\n" + Square(version), version);
+  }
+  EXPECT_EQ(WorldError("Material \"dielectric\" \"float roughness\" -2\n" + Square(4), 4),
+            "a.pbrt:5:23: error: parameter \"roughness\" is -2, expected 0 or more");
+  EXPECT_EQ(WorldError("Material \"coateddiffuse\" \"float g\" -2\n" + Square(4), 4),
+            "a.pbrt:5:26: error: parameter \"g\" is -2, expected -1 to 1");
+  EXPECT_EQ(WorldError("Material \"dielectric\" \"float eta\" 0\n" + Square(4), 4),
+            "a.pbrt:5:23: error: the value of parameter \"eta\" is 0, expected more than 0");
+}
+
+TEST(BuildMaterials, ClampedSharesAreTold) {
+  const auto warnings = [](const std::string& material, int version) {
+    const Built built = BuildWorld("Material " + material + "\n" + Square(version), version);
+    std::string lines;
+    for (const std::string& line : built.warnings) lines += line + "\n";
+    return lines;
+  };
+  EXPECT_EQ(warnings(R"("diffuse" "rgb reflectance" [1.5 .5 -.25])", 4),
+            "a.pbrt:5:20: warning: parameter \"reflectance\" is 1.5 0.5 -0.25, expected 0 to 1; it is clamped to 1 0.5 "
+            "0\n");
+  EXPECT_EQ(
+      warnings(R"("diffuse" "spectrum reflectance" [300 1.5 900 1.5])", 4),
+      "a.pbrt:5:20: warning: parameter \"reflectance\" has the value 1.5, expected 0 to 1; the colour that it makes "
+      "is clamped to that\n");
+  const std::pair<const char*, int> clamped[] = {
+      {R"("matte" "rgb Kd" [2 1 1])", 3},       {R"("mirror" "rgb Kr" [2 1 1])", 3},
+      {R"("glass" "rgb Kt" [1 1 -1])", 3},      {R"("plastic" "rgb Ks" [2 0 0] "rgb Kd" [0 0 0])", 3},
+      {R"("uber" "rgb opacity" [2 1 1])", 3},   {R"("translucent" "rgb reflect" [2 1 1])", 3},
+      {R"("substrate" "rgb Kd" [2 0 0])", 3},   {R"("conductor" "rgb reflectance" [2 1 1])", 4},
+      {R"("diffuse" "float reflectance" 2)", 4}};
+  for (const auto& [material, version] : clamped)
+    EXPECT_NE(warnings(material, version).find("expected 0 to 1; it is clamped to "), std::string::npos) << material;
+  // What is multiplied first, a colour beyond the gamut's border, and what a texture gives.
+  EXPECT_EQ(warnings(R"("diffusetransmission" "rgb reflectance" [2 2 2] "float scale" .5)", 4), "");
+  EXPECT_NE(warnings(R"("diffusetransmission" "rgb reflectance" [1 1 1] "float scale" 2)", 4), "");
+  EXPECT_EQ(warnings("\"diffuse\"\nColorSpace \"rec2020\"\nMaterial \"diffuse\" \"rgb reflectance\" [0 1 0]", 4), "");
+  EXPECT_EQ(warnings("\"diffuse\"\nTexture \"t\" \"spectrum\" \"constant\" \"rgb value\" [2 2 2]\n"
+                     "Material \"diffuse\" \"texture reflectance\" \"t\"",
+                     4),
+            "");
 }
 
 }  // namespace
