@@ -159,6 +159,15 @@ void Assembler::AddInstance(const InstanceDescription& instance) {
   parts_->instances.push_back({group->index, groupToRender, instance.location});
 }
 
+void WarnOfBlackImage(const SceneDescription& description, const SceneParts& parts, Diagnostics& diagnostics) {
+  const FileLocation file(description.file.string());
+  if (parts.lights.empty()) diagnostics.Warn(file, "the scene has no light; its image is black");
+  // An infinite light is seen by itself.
+  const bool showsLight = std::any_of(description.lights.begin(), description.lights.end(), IsInfinite);
+  if (parts.primitives.empty() && !showsLight)
+    diagnostics.Warn(file, "the scene has no shape to be seen; its image is black");
+}
+
 }  // namespace
 
 SceneParts BuildSceneParts(const SceneDescription& description, const BuildOptions& options, Diagnostics& diagnostics) {
@@ -172,8 +181,7 @@ SceneParts BuildSceneParts(const SceneDescription& description, const BuildOptio
   assembler.AddShapes();
   assembler.AddInstances();
   assembler.Finish();
-  if (parts.lights.empty())
-    diagnostics.Warn(FileLocation(description.file.string()), "the scene has no light; its image is black");
+  WarnOfBlackImage(description, parts, diagnostics);
   return parts;
 }
 

@@ -15,7 +15,7 @@ using testing::UniformNumbers;
 
 std::unique_ptr<Scene> SceneOfALamp() {
   return testing_support::SceneFromText(
-      "Camera \"perspective\" Film \"image\" WorldBegin LightSource \"point\" WorldEnd");
+      "Camera \"perspective\" Film \"image\" WorldBegin LightSource \"point\" Shape \"sphere\" WorldEnd");
 }
 
 /// Light from a few sides, and none from most.

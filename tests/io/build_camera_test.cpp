@@ -17,7 +17,9 @@ WorldRay RayOf(const Scene& scene, double x, double y) {
 }
 
 Built CameraScene(const std::string& statements, int version) {
-  return BuildText(statements + "\nWorldBegin\nLightSource \"point\"\n" + (version == 3 ? "WorldEnd" : ""), version);
+  return BuildText(
+      statements + "\nWorldBegin\nLightSource \"point\" Shape \"sphere\"\n" + (version == 3 ? "WorldEnd" : ""),
+      version);
 }
 
 const char* const kWide = R"(Film "rgb" "integer xresolution" 200 "integer yresolution" 100

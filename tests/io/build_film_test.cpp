@@ -5,14 +5,17 @@ namespace dapple {
 namespace {
 
 RenderSettings SettingsOf(const std::string& options, int version, const BuildOptions& overrides = {}) {
-  const Built built = BuildText(options + "\nWorldBegin\nLightSource \"point\"\n" + (version == 3 ? "WorldEnd" : ""),
-                                version, overrides);
+  const Built built =
+      BuildText(options + "\nWorldBegin\nLightSource \"point\" Shape \"sphere\"\n" + (version == 3 ? "WorldEnd" : ""),
+                version, overrides);
   for (const std::string& line : built.warnings) ADD_FAILURE() << line;
   return built->Settings();
 }
 
 std::vector<std::string> WarningsOf(const std::string& options, int version) {
-  return BuildText(options + "\nWorldBegin\nLightSource \"point\"\n" + (version == 3 ? "WorldEnd" : ""), version)
+  return BuildText(
+             options + "\nWorldBegin\nLightSource \"point\" Shape \"sphere\"\n" + (version == 3 ? "WorldEnd" : ""),
+             version)
       .warnings;
 }
 

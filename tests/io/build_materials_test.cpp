@@ -222,7 +222,8 @@ TEST(BuildMaterials, StandInsComeWithAWarningOfTheirPlace) {
 TEST(BuildMaterials, UnusedMaterialsAreNotBuilt) {
   // Its texture's file does not exist, and nobody asks for it.
   CleanWorld(R"(Texture "t" "spectrum" "imagemap" "string filename" "nowhere.png"
-      MakeNamedMaterial "a" "string type" "diffuse" "texture reflectance" "t")",
+      MakeNamedMaterial "a" "string type" "diffuse" "texture reflectance" "t"
+      Shape "sphere")",
              4);
 }
 

@@ -108,5 +108,25 @@ TEST(BuildScene, AMissingFileIsAnError) {
             std::string::npos);
 }
 
+TEST(BuildScene, ABlackImageIsTold) {
+  const auto warnings = [](const std::string& world) {
+    std::string lines;
+    for (const std::string& line : BuildText("WorldBegin " + world, 4).warnings) lines += line + "\n";
+    return lines;
+  };
+  const std::string light = "LightSource \"point\" ", shape = "Shape \"sphere\" ";
+  const std::string noLight = "a.pbrt: warning: the scene has no light; its image is black\n";
+  const std::string noShape = "a.pbrt: warning: the scene has no shape to be seen; its image is black\n";
+  EXPECT_EQ(warnings(light + shape), "");
+  EXPECT_EQ(warnings(shape), noLight);
+  EXPECT_EQ(warnings(light), noShape);
+  EXPECT_EQ(warnings(""), noLight + noShape);
+  EXPECT_EQ(warnings(light + "Material \"interface\" " + shape), noShape);
+  EXPECT_EQ(warnings(light + "ObjectBegin \"o\" " + shape + "ObjectEnd"), noShape);
+  EXPECT_EQ(warnings(light + "ObjectBegin \"o\" " + shape + "ObjectEnd ObjectInstance \"o\""), "");
+  // Such a light is seen by itself.
+  EXPECT_EQ(warnings("LightSource \"infinite\""), "");
+}
+
 }  // namespace
 }  // namespace dapple

@@ -146,15 +146,17 @@ TEST(BuildShapes, AlphaCutsHoles) {
 
 TEST(BuildShapes, InterfacesAreLeftOut) {
   for (const std::string material : {"Material \"interface\"", "Material \"none\"", "Material \"\""})
-    EXPECT_EQ(CleanWorld(material + "\nShape \"sphere\"", 4)->Facts().shapes, 0);
+    EXPECT_EQ(CleanWorld(material + "\nShape \"sphere\" Material \"diffuse\" Shape \"disk\"", 4)->Facts().shapes, 1);
   // In pbrt-v3 they may glow; then they are seen, and cast no shadow.
   const auto glow = CleanWorld("Material \"none\" AreaLightSource \"diffuse\" Shape \"sphere\"", 3);
   const std::optional<SurfaceInteraction> hit = LookAtXY(*glow);
   ASSERT_TRUE(hit);
   EXPECT_GE(glow->AreaLightAt(*hit), 0);
   EXPECT_EQ(glow->MaterialAt(*hit), nullptr);
-  const Built v4 = BuildWorld("Material \"interface\" AreaLightSource \"diffuse\" Shape \"sphere\"", 4);
-  EXPECT_EQ(v4->Facts().shapes, 0);
+  const Built v4 = BuildWorld(
+      "AttributeBegin Material \"interface\" AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd Shape \"disk\"",
+      4);
+  EXPECT_EQ(v4->Facts().shapes, 1);
   EXPECT_EQ(v4.warnings.size(), 1u);
 }
 
