@@ -16,6 +16,7 @@
 
 #include "src/image/image_io.h"
 #include "src/io/build_context.h"
+#include "src/io/nearest_name.h"
 #include "src/io/pbrt_parser.h"
 #include "src/io/scene_hash.h"
 #include "src/sampling/seed.h"
@@ -245,8 +246,9 @@ void WarnOfLackingIntegrator(const RenderSettings& settings, const IntegratorCho
   const std::vector<std::string_view> known = IntegratorNames();
   if (settings.integrator.empty() || std::find(known.begin(), known.end(), settings.integrator) != known.end()) return;
   diagnostics.Warn(settings.integratorLocation,
-                   fmt::format("integrator \"{}\" is not one of Dapple's ({}); what the scene holds decides: {}",
-                               settings.integrator, fmt::join(known, ", "), choice.name));
+                   fmt::format("integrator \"{}\" is not one of Dapple's ({}); what the scene holds decides: {}{}",
+                               settings.integrator, fmt::join(known, ", "), choice.name,
+                               DidYouMean(settings.integrator, {known.begin(), known.end()})));
 }
 
 }  // namespace

@@ -41,7 +41,9 @@ Description PbrtReader::ReadEntity(std::string_view what, WordKind kind) {
 
 void PbrtReader::Attribute() {
   const std::string name = ReadName("shape, light, material, medium or texture");
+  std::vector<std::string> known;
   for (const NamedTarget& entry : kAttributeTargets) {
+    known.emplace_back(entry.name);
     if (entry.name != name) continue;
     auto& attributes = state_.Now().attributes[static_cast<std::size_t>(entry.target)];
     ParameterList added = ReadParameters();
@@ -49,8 +51,9 @@ void PbrtReader::Attribute() {
     attributes = std::make_shared<const ParameterList>(std::move(added));
     return;
   }
-  throw Error(here_, fmt::format("Attribute {}, expected \"shape\", \"light\", \"material\", \"medium\" or \"texture\"",
-                                 Quoted(name)));
+  throw Error(here_,
+              fmt::format("Attribute {}, expected \"shape\", \"light\", \"material\", \"medium\" or \"texture\"{}",
+                          Quoted(name), DidYouMean(name, known)));
 }
 
 void PbrtReader::Option() {
@@ -60,14 +63,16 @@ void PbrtReader::Option() {
 
 void PbrtReader::ColorSpace() {
   const std::string name = ReadName("a colour space");
+  std::vector<std::string> known;
   for (const NamedSpace& entry : kRgbSpaces) {
+    known.emplace_back(entry.name);
     if (entry.name != name) continue;
     state_.Now().rgbSpace = entry.space;
     return;
   }
   throw Error(here_,
-              fmt::format("unknown colour space {}, expected \"srgb\", \"dci-p3\", \"rec2020\" or \"aces2065-1\"",
-                          Quoted(name)));
+              fmt::format("unknown colour space {}, expected \"srgb\", \"dci-p3\", \"rec2020\" or \"aces2065-1\"{}",
+                          Quoted(name), DidYouMean(name, known)));
 }
 
 void PbrtReader::Camera() {

@@ -500,5 +500,17 @@ TEST_F(Program, LightSamplesOfTheCommandLineCountForCompensation) {
   EXPECT_NE(render("", ""), ofLight);
 }
 
+TEST_F(Program, WarnsOfAMisspelledIntegratorWithTheNearestOne) {
+  WriteScene("tiny.pbrt");
+  const auto warning = [&](const std::string& name) {
+    Write("named.pbrt", "Integrator \"" + name + "\"\n" + Read("tiny.pbrt"));
+    return Run("info named.pbrt").err;
+  };
+  EXPECT_TRUE(Contains(warning("pth"), "what the scene holds decides: hybrid; did you mean \"path\"?\n"));
+  for (const std::string name : {"bdpt", "mlt", "directlighting", "whitted", "ao", "ambientocclusion", "simplepath",
+                                 "simplevolpath", "lightpath", "randomwalk", "function"})
+    EXPECT_FALSE(Contains(warning(name), "did you mean")) << name;
+}
+
 }  // namespace
 }  // namespace dapple

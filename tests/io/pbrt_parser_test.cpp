@@ -376,7 +376,7 @@ TEST(PbrtParser, ArgumentsThatAreMissing) {
             "a.pbrt:1:1: error: material \"m\" has no type, expected a parameter \"string type\"");
   EXPECT_EQ(ErrorOf("Attribute \"shapes\""),
             "a.pbrt:1:1: error: Attribute \"shapes\", expected \"shape\", \"light\", \"material\", \"medium\" or "
-            "\"texture\"");
+            "\"texture\"; did you mean \"shape\"?");
   EXPECT_EQ(ErrorOf("ActiveTransform Sometimes"),
             "a.pbrt:1:17: error: ActiveTransform: expected StartTime, EndTime or All, found \"Sometimes\"");
 }
@@ -579,6 +579,11 @@ TEST(PbrtParser, AnyOrderOfWordsEndsInASceneOrAnError) {
     }
   }
   EXPECT_GT(scenes, 100);
+}
+
+TEST(PbrtParser, TheNearestColourSpaceIsNamed) {
+  const std::string error = ErrorOf("ColorSpace \"rec202\"");
+  EXPECT_NE(error.find("or \"aces2065-1\"; did you mean \"rec2020\"?"), std::string::npos) << error;
 }
 
 }  // namespace
