@@ -38,6 +38,16 @@ void CheckNumber(const Parameter& parameter, std::string_view of, double number,
               fmt::format("{} of parameter \"{}\" is {}, expected {}", of, parameter.name, number, bounds.ToString()));
 }
 
+/// `parameter` names a texture of the right kind, which was not there yet where it stands.
+[[noreturn]] void FailForwardTexture(const Parameter& parameter, const TextureDescription& named) {
+  const std::vector<Parameter>& own = named.params.All();
+  const bool isOwn = std::any_of(own.begin(), own.end(), [&](const Parameter& of) { return &of == &parameter; });
+  if (isOwn) throw Error(parameter.location, fmt::format("texture \"{}\" names itself", named.name));
+  throw Error(parameter.location,
+              fmt::format("texture \"{}\" is defined further down ({}), expected before the texture that names it",
+                          named.name, named.location.ToString()));
+}
+
 [[noreturn]] void FailColorType(const Parameter& parameter) {
   throw Error(parameter.location, fmt::format("parameter \"{}\" is \"{}\", expected a colour: \"rgb\", \"spectrum\", "
                                               "\"blackbody\" or a texture",
@@ -126,8 +136,11 @@ void Values::FailTexture(const Parameter& parameter, bool isSpectrum) const {
     throw Error(parameter.location, fmt::format("texture \"{}\" of parameter \"{}\" is a {} texture, expected a {} one",
                                                 name, parameter.name, isSpectrum ? "float" : "spectrum", kind));
   std::vector<std::string> known;
-  for (const TextureDescription& texture : context_.description.textures)
-    if (texture.isSpectrum == isSpectrum) known.push_back(texture.name);
+  for (const TextureDescription& texture : context_.description.textures) {
+    if (texture.isSpectrum != isSpectrum) continue;
+    if (texture.name == name) FailForwardTexture(parameter, texture);
+    known.push_back(texture.name);
+  }
   throw Error(parameter.location,
               fmt::format("no {} texture is named \"{}\" here{}", kind, name, DidYouMean(name, known)));
 }

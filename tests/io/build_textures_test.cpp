@@ -118,5 +118,27 @@ TEST(BuildTextures, ErrorsHaveAPlace) {
   EXPECT_EQ(error("\"spectrum\" \"checkerboard\" \"integer dimension\" 4").substr(0, 18), "a.pbrt:5:39: error");
 }
 
+TEST(BuildTextures, OneThatIsNotThereYetIsToldApartFromOneThatIsNowhere) {
+  const auto error = [](const std::string& textures) {
+    return WorldError(textures + "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" + Square(4), 4);
+  };
+  EXPECT_EQ(error(R"(Texture "t" "spectrum" "scale" "texture tex" "t")"),
+            "a.pbrt:5:32: error: texture \"t\" names itself");
+  EXPECT_EQ(error(R"(Texture "t" "spectrum" "scale" "texture tex" "u"
+Texture "u" "spectrum" "constant")"),
+            "a.pbrt:5:32: error: texture \"u\" is defined further down (a.pbrt:6:1), expected before the texture that "
+            "names it");
+  EXPECT_EQ(error(R"(Texture "t" "spectrum" "scale" "texture tex" "u"
+Texture "u" "spectrum" "scale" "texture tex" "t")")
+                .substr(0, 68),
+            "a.pbrt:5:32: error: texture \"u\" is defined further down (a.pbrt:6:1)");
+  EXPECT_EQ(error(R"(Texture "tt" "spectrum" "constant" Texture "t" "spectrum" "scale" "texture tex" "ttt")"),
+            "a.pbrt:5:67: error: no spectrum texture is named \"ttt\" here; did you mean \"tt\"?");
+  // What stands before under the same name is meant.
+  EXPECT_EQ(
+      error("Texture \"t\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\""),
+      "no error");
+}
+
 }  // namespace
 }  // namespace dapple
