@@ -349,8 +349,8 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
         fmt::format("--camera-samples is for path; {} takes as many camera paths as it finds best", plan.choice.name));
   }
   if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
-  // What a file tunes for sppm holds for sppm alone: other algorithms choose by themselves.
-  if (plan.choice.name == "sppm") {
+  // What a file tunes for an algorithm holds for that one alone: others choose by themselves.
+  if (plan.choice.name == settings.integrator) {
     plan.options.photonsPerPass = Either(options.photons, settings.photonsPerIteration);
     plan.options.radius = Either(options.radius, settings.radius);
   }

@@ -188,15 +188,20 @@ void BuildSampler(const BuildContext& context, RenderSettings* settings) {
                                                     "randomization", "samplepixelcenter"});
 }
 
-void BuildSppm(const Entity& integrator, RenderSettings* settings) {
+/// pbrt-v4's sppm has no count of its own: a pass for each sample of a pixel.
+int GetIterations(const BuildContext& context, const RenderSettings& settings) {
+  const Entity& integrator = context.description.integrator;
+  for (const char* name : {"iterations", "numiterations"})
+    if (integrator.params.Has(name)) return GetIntAtLeast(integrator, name, 64, 1);
+  return context.IsV3() ? 64 : settings.samplesPerPixel.value_or(16);
+}
+
+/// Of the algorithms that trace photons: pbrt's sppm and Dapple's own.
+void BuildPhotons(const Entity& integrator, RenderSettings* settings) {
   const ParameterList& params = integrator.params;
-  if (params.Has("iterations"))
-    settings->iterations = GetIntAtLeast(integrator, "iterations", 64, 1);
-  else if (params.Has("numiterations"))
-    settings->iterations = GetIntAtLeast(integrator, "numiterations", 64, 1);
   const int photons = params.GetInt("photonsperiteration", -1);
   if (photons > 0) settings->photonsPerIteration = photons;
-  if (!params.Has("radius")) return;
+  if (integrator.type == "light_tracing" || !params.Has("radius")) return;
   const double radius = params.GetFloat("radius", 1);
   if (!(radius > 0))
     throw Error(params.LocationOf("radius", integrator.location),
@@ -211,12 +216,10 @@ void BuildIntegrator(const BuildContext& context, RenderSettings* settings) {
   settings->integratorLocation = integrator.location;
   settings->maxDepth = GetIntAtLeast(integrator, "maxdepth", kPbrtDefaultDepth, 0);
   if (integrator.params.Has("seed")) settings->seed = integrator.params.GetInt("seed", 0);
-  if (integrator.type == "sppm") {
-    BuildSppm(integrator, settings);
-    // pbrt-v4's sppm has no count of its own: a pass for each sample of a pixel.
-    if (!settings->iterations && !context.IsV3()) settings->iterations = settings->samplesPerPixel.value_or(16);
-    if (!settings->iterations) settings->iterations = 64;
-  }
+  if (integrator.type == "sppm") settings->iterations = GetIterations(context, *settings);
+  static const std::vector<std::string> kWithPhotons = {"sppm", "hybrid", "photon_mapping", "light_tracing"};
+  if (std::find(kWithPhotons.begin(), kWithPhotons.end(), integrator.type) != kWithPhotons.end())
+    BuildPhotons(integrator, settings);
   // Of pbrt's own algorithms and machinery; nothing here depends on them.
   integrator.params.ReportUnused(context.diagnostics, {"rrthreshold",
                                                        "lightsampler",

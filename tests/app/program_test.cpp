@@ -512,5 +512,27 @@ TEST_F(Program, WarnsOfAMisspelledIntegratorWithTheNearestOne) {
     EXPECT_FALSE(Contains(warning(name), "did you mean")) << name;
 }
 
+// What a file gives for an algorithm holds for that one, and for no other that the command line may ask for.
+TEST_F(Program, RadiusAndPhotonsOfTheFileHoldForTheIntegratorThatItNames) {
+  WriteScene("tiny.pbrt");
+  const std::string tiny = Read("tiny.pbrt"), plan = " --passes 1 --quiet -o a.exr";
+  const auto render = [&](const std::string& options) {
+    const ProgramResult result = Run(options + plan);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    const Image image = ReadImage(Path("a.exr"));
+    return std::vector<float>(image.Values().begin(), image.Values().end());
+  };
+  for (const std::string name : {"hybrid", "photon_mapping", "sppm", "light_tracing"}) {
+    Write("plain.pbrt", "Integrator \"" + name + "\"\n" + tiny);
+    Write("tuned.pbrt",
+          "Integrator \"" + name + "\" \"float radius\" [0.5] \"integer photonsperiteration\" [300]\n" + tiny);
+    const std::string same = name == "light_tracing" ? " --photons 300" : " --photons 300 --radius 0.5";
+    EXPECT_EQ(render("tuned.pbrt"), render("plain.pbrt" + same)) << name;
+    EXPECT_NE(render("tuned.pbrt"), render("plain.pbrt")) << name;
+    const std::string other = name == "sppm" ? " --integrator hybrid" : " --integrator sppm";
+    EXPECT_EQ(render("tuned.pbrt" + other), render("plain.pbrt" + other)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace dapple

@@ -163,5 +163,17 @@ TEST(BuildFilm, ErrorsHaveAPlace) {
             "a.pbrt:1:22: error: \"xsamples\" times \"ysamples\" is 4294967296, expected at most 2147483647");
 }
 
+TEST(BuildFilm, IntegratorsWithPhotonsHaveTheirNumbers) {
+  const std::string numbers = R"( "integer photonsperiteration" [5000] "float radius" [0.25])";
+  for (const std::string name : {"hybrid", "photon_mapping"}) {
+    const RenderSettings settings = SettingsOf("Integrator \"" + name + "\"" + numbers, 4);
+    EXPECT_EQ(settings.photonsPerIteration, 5000) << name;
+    EXPECT_EQ(settings.radius, 0.25) << name;
+    EXPECT_FALSE(settings.iterations) << name;
+  }
+  EXPECT_EQ(SettingsOf("Integrator \"light_tracing\"" + numbers, 4).photonsPerIteration, 5000);
+  EXPECT_FALSE(SettingsOf("Integrator \"path\"" + numbers, 4).photonsPerIteration);
+}
+
 }  // namespace
 }  // namespace dapple
