@@ -12,6 +12,7 @@
 
 #include "src/app/command.h"
 #include "src/app/format.h"
+#include "src/app/named_files.h"
 #include "src/app/scene_options.h"
 #include "src/base/parallel.h"
 #include "src/image/false_color.h"
@@ -125,11 +126,6 @@ void PrintText(const CompareOptions& options, const std::vector<Comparison>& com
 }
 
 int RunCompare(const CompareOptions& options) {
-  if (!options.pictures.empty() && options.pictures.size() != options.tests.size())
-    throw Error(fmt::format("{} but {}: expected one --difference for each image",
-                            FormatNumberOf(static_cast<int64_t>(options.tests.size()), "image", "images"),
-                            FormatNumberOf(static_cast<int64_t>(options.pictures.size()), "picture of differences",
-                                           "pictures of differences")));
   for (const std::string& picture : options.pictures) CheckOutput(picture);
   const ThreadLimit threads(options.threads);
   const Image reference = ReadImage(options.reference);
@@ -137,6 +133,18 @@ int RunCompare(const CompareOptions& options) {
   for (size_t i = 0; i < options.tests.size(); ++i) comparisons.push_back(Compare(options, reference, i));
   options.isJson ? PrintJson(options, comparisons) : PrintText(options, comparisons);
   return kExitSuccess;
+}
+
+void RequireUsable(const CompareOptions& options) {
+  if (!options.pictures.empty() && options.pictures.size() != options.tests.size())
+    throw CLI::ValidationError(
+        fmt::format("{} but {}: expected one --difference for each image",
+                    FormatNumberOf(static_cast<int64_t>(options.tests.size()), "image", "images"),
+                    FormatNumberOf(static_cast<int64_t>(options.pictures.size()), "picture of differences",
+                                   "pictures of differences")));
+  std::vector<NamedFile> read = NamedFiles("an image", options.tests);
+  read.push_back({"the reference", options.reference});
+  RequireNoClash(NamedFiles("--difference", options.pictures), read);
 }
 
 }  // namespace
@@ -167,7 +175,10 @@ void AddCompareCommand(CLI::App& program, Action* action) {
   command->add_option("--threads", options->threads, "Threads; 0: one a processor")
       ->check(CLI::Range(0, kMaxThreads).description(""))
       ->type_name("N");
-  command->callback([options, action] { *action = [options] { return RunCompare(*options); }; });
+  command->callback([options, action] {
+    RequireUsable(*options);
+    *action = [options] { return RunCompare(*options); };
+  });
 }
 
 }  // namespace dapple

@@ -17,6 +17,7 @@
 #include "src/app/command_line.h"
 #include "src/app/convergence_study.h"
 #include "src/app/format.h"
+#include "src/app/named_files.h"
 #include "src/app/report_page.h"
 #include "src/app/signals.h"
 #include "src/base/parallel.h"
@@ -96,6 +97,19 @@ void WriteReport(const ConvergeOptions& options, const std::vector<Study>& studi
   fmt::print("{}\n", path("index.html"));
 }
 
+std::string ReferencePath(const ConvergeOptions& options, const std::string& sceneName) {
+  return (std::filesystem::path(options.folder) / fmt::format("reference-{}.exr", sceneName)).string();
+}
+
+/// The references that are rendered, one a scene, by the scene's name alone.
+std::vector<NamedFile> ReferencesWrittenBy(const ConvergeOptions& options) {
+  std::vector<NamedFile> files;
+  if (!options.referenceFile.empty()) return files;
+  for (const std::string& scene : options.scenes)
+    files.push_back({fmt::format("the reference of {}", scene), ReferencePath(options, SceneName(scene))});
+  return files;
+}
+
 void TellDuration(const ConvergeOptions& options) {
   const double runs = static_cast<double>(options.integrators.size()) *
                       static_cast<double>(std::max<size_t>(1, options.strategies.size())) * options.seeds;
@@ -105,8 +119,6 @@ void TellDuration(const ConvergeOptions& options) {
 }
 
 int RunConverge(ConvergeOptions options) {
-  if (!options.referenceFile.empty() && options.scenes.size() > 1)
-    throw Error("--reference is of one scene, and several were given");
   MakeFolder(options.folder);
   const ThreadLimit threads(options.scene.threads);
   if (options.referenceSeconds == 0) options.referenceSeconds = 10 * *options.scene.seconds;
@@ -117,9 +129,8 @@ int RunConverge(ConvergeOptions options) {
     if (signals.Flag()) break;
     options.scene.scene = scene;
     Study study = RunStudy(options, options.isQuiet, signals.Flag());
-    const std::string name = fmt::format("reference-{}.exr", study.convergence.name);
     if (options.referenceFile.empty())
-      WriteExr((std::filesystem::path(options.folder) / name).string(), study.pictures.reference);
+      WriteExr(ReferencePath(options, study.convergence.name), study.pictures.reference);
     studies.push_back(std::move(study));
   }
   if (studies.empty()) throw Error("stopped before the first scene; no report is written");
@@ -190,7 +201,12 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
   command->add_flag("--quiet", options->isQuiet, "No progress; warnings and errors only");
   AddReferenceGroup(command, options.get());
   options->scene.AddFixedTo(command);
-  command->callback([options, action] { *action = [options] { return RunConverge(*options); }; });
+  command->callback([options, action] {
+    if (!options->referenceFile.empty() && options->scenes.size() > 1)
+      throw CLI::ValidationError("--reference", "it is of one scene, and several were given");
+    RequireNoClash(ReferencesWrittenBy(*options), {});
+    *action = [options] { return RunConverge(*options); };
+  });
 }
 
 }  // namespace dapple

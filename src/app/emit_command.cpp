@@ -10,6 +10,7 @@
 
 #include "src/app/command.h"
 #include "src/app/format.h"
+#include "src/app/named_files.h"
 #include "src/app/scene_options.h"
 #include "src/base/parallel.h"
 #include "src/image/atomic_file.h"
@@ -59,6 +60,10 @@ int RunEmit(const EmitCommandOptions& options) {
   Diagnostics diagnostics(Tell);
   const LoadedScene loaded = Load(options.scene, diagnostics);
   const Scene& scene = *loaded.scene;
+  if (const auto clash =
+          FindClash({{"--output", options.output}}, NamedFiles("what the scene is read from", loaded.files));
+      !clash.empty())
+    throw Error(FileLocation(options.scene.scene), clash);
   const EmittedRays emitted =
       AtLocation(FileLocation(options.scene.scene), [&] { return EmitRays(scene, options.emit); });
   WriteFileAtomically(options.output, format(scene, emitted));
@@ -105,7 +110,10 @@ void AddEmitCommand(CLI::App& program, Action* action) {
       ->add_option("--threads", options->threads, "Threads; 0: one a processor. The rays are the same with any number")
       ->check(CLI::Range(0, kMaxThreads).description(""))
       ->type_name("N");
-  command->callback([options, action] { *action = [options] { return RunEmit(*options); }; });
+  command->callback([options, action] {
+    RequireNoClash({{"--output", options->output}}, {{"the scene", options->scene.scene}});
+    *action = [options] { return RunEmit(*options); };
+  });
 }
 
 }  // namespace dapple

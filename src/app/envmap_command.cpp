@@ -14,6 +14,7 @@
 #include "src/app/command.h"
 #include "src/app/environment_pictures.h"
 #include "src/app/format.h"
+#include "src/app/named_files.h"
 #include "src/app/scene_options.h"
 #include "src/base/numerics.h"
 #include "src/base/parallel.h"
@@ -140,7 +141,13 @@ void AddEnvmapCommand(CLI::App& program, Action* action) {
   command->add_option("--threads", options->threads, "Threads; 0: one a processor")
       ->check(CLI::Range(0, kMaxThreads).description(""))
       ->type_name("N");
-  command->callback([options, action] { *action = [options] { return RunEnvmap(*options); }; });
+  command->callback([options, action] {
+    std::vector<NamedFile> written;
+    if (!options->densityImage.empty()) written.push_back({"--pdf-image", options->densityImage});
+    if (!options->sampleImage.empty()) written.push_back({"--sample-image", options->sampleImage});
+    RequireNoClash(written, {{"the image", options->file}});
+    *action = [options] { return RunEnvmap(*options); };
+  });
 }
 
 }  // namespace dapple

@@ -12,6 +12,7 @@
 
 #include "src/app/command.h"
 #include "src/app/format.h"
+#include "src/app/named_files.h"
 #include "src/app/render_outputs.h"
 #include "src/render/render_state.h"
 
@@ -63,7 +64,11 @@ void AddMergeCommand(CLI::App& program, Action* action) {
                    "How many passes there are in all, so that it is told where the last are missing too")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
       ->type_name("N");
-  command->callback([options, action] { *action = [options] { return RunMerge(*options); }; });
+  command->callback([options, action] {
+    // Where a part is replaced by the sum of all nothing is lost.
+    RequireNoClash(NamedFiles("--output", options->outputs), {});
+    *action = [options] { return RunMerge(*options); };
+  });
 }
 
 }  // namespace dapple

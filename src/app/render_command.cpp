@@ -15,6 +15,7 @@
 #include "src/app/command.h"
 #include "src/app/format.h"
 #include "src/app/memory.h"
+#include "src/app/named_files.h"
 #include "src/app/progress_display.h"
 #include "src/app/render_outputs.h"
 #include "src/app/scene_options.h"
@@ -53,6 +54,14 @@ std::string DefaultOutput(const RenderOptions& options, const RenderSettings& se
   const std::string name = named.empty() ? SceneName(options.scene) : named.stem().string();
   if (options.isPart) return fmt::format("{}.{}-{}.dapple", name, options.passes->begin, options.passes->end);
   return name + ".exr";
+}
+
+/// All that is written under a name of its own; of snapshots the names are not known yet.
+std::vector<NamedFile> WrittenBy(const RenderOptions& options) {
+  std::vector<NamedFile> files = NamedFiles("--output", options.outputs);
+  if (!options.outputs.empty()) files.push_back({"the checkpoint", Checkpoint::PathFor(options.outputs[0])});
+  if (!options.statistics.empty()) files.push_back({"--stats", options.statistics});
+  return files;
 }
 
 std::string Rate(int64_t count, double seconds) {
@@ -266,6 +275,9 @@ int RunRender(RenderOptions options) {
     options.outputs.push_back(DefaultOutput(options, scene.Settings()));
     CheckRenderOutput(options.outputs[0]);
   }
+  if (const auto clash = FindClash(WrittenBy(options), NamedFiles("what the scene is read from", loaded.files));
+      !clash.empty())
+    throw Error(FileLocation(options.scene), clash);
   RenderPlan plan = MakePlan(scene, options, diagnostics);
   RequireFilm(scene.Settings(), options.aovs, TracksBlur(options, plan), MachineMemoryBytes());
   plan.budget.error = options.error;
@@ -404,6 +416,7 @@ void AddRenderCommand(CLI::App& program, Action* action) {
       throw CLI::ValidationError("--error", "it is of the whole picture, not of a range of passes");
     if (options->snapshots && HasNoPicture(*options))
       throw CLI::ValidationError("--snapshots", "they are pictures: give an --output that is one, .exr or .png");
+    RequireNoClash(WrittenBy(*options), {{"the scene", options->scene}});
     *action = [options] { return RunRender(*options); };
   });
 }

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "src/app/named_files.h"
 #include "src/image/image_io.h"
 #include "src/io/build_context.h"
 #include "src/io/nearest_name.h"
@@ -311,7 +312,7 @@ LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics)
   SceneIdentity identity{HashSceneContent(description),
                          build.drawsTowardLights ? DescribeEnvironmentSampling(description) : "none"};
   return {description.version, description.versionReason, std::move(identity),
-          BuildScene(description, build, diagnostics)};
+          BuildScene(description, build, diagnostics), FilesOf(description)};
 }
 
 }  // namespace

@@ -72,6 +72,7 @@ struct LoadedScene {
   std::string versionReason;
   SceneIdentity identity;
   std::unique_ptr<Scene> scene;
+  std::vector<std::string> files;  ///< all that was read for it (`FilesOf`)
 };
 
 /// Reads and builds the scene with the options' resolution, crop and version. Throws `Error`.

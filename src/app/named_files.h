@@ -1,0 +1,31 @@
+// The files that one command names: what it writes must not replace what it reads, nor something else that it writes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src/io/scene_description.h"
+
+namespace dapple {
+
+/// A file, and what it is to the command, as its user calls it: "--stats", "the scene".
+struct NamedFile {
+  std::string role;
+  std::string path;
+};
+
+/// "--stats and the scene are one file: 'box.pbrt'" of the first of `written` that is another of them, or one of
+/// `read`, by whatever path; empty where there is none.
+std::string FindClash(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read);
+
+/// Throws `CLI::ValidationError`, wrong usage, where there is a clash.
+void RequireNoClash(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read);
+
+/// `role` for each of the paths.
+std::vector<NamedFile> NamedFiles(const std::string& role, const std::vector<std::string>& paths);
+
+/// What a scene is read from, each once: the files of its text, and those that are there by a name that a parameter
+/// gives (as `HashSceneContent` takes them; not the picture's name).
+std::vector<std::string> FilesOf(const SceneDescription& scene);
+
+}  // namespace dapple
