@@ -118,12 +118,22 @@ void TellDuration(const ConvergeOptions& options) {
                                                            (runs * *options.scene.seconds + ofReference))));
 }
 
+/// One that cannot be read must not cost the studies of those before it. A single one is read before it is rendered
+/// anyway.
+void CheckScenes(ConvergeOptions options) {
+  for (const std::string& scene : options.scenes) {
+    options.scene.scene = scene;
+    CheckScene(options);
+  }
+}
+
 int RunConverge(ConvergeOptions options) {
   MakeFolder(options.folder);
   const ThreadLimit threads(options.scene.threads);
   if (options.referenceSeconds == 0) options.referenceSeconds = 10 * *options.scene.seconds;
   if (!options.isQuiet) TellDuration(options);
   const StopSignals signals;
+  if (options.scenes.size() > 1) CheckScenes(options);
   std::vector<Study> studies;
   for (const std::string& scene : options.scenes) {
     if (signals.Flag()) break;

@@ -15,6 +15,7 @@
 #include "src/app/memory.h"
 #include "src/image/false_color.h"
 #include "src/image/metrics.h"
+#include "src/io/build_context.h"
 #include "src/render/aov.h"
 #include "src/render/convergence_run.h"
 #include "src/render/memory_needs.h"
@@ -39,13 +40,19 @@ Image Exposed(Image picture, const Scene& scene) {
 
 class StudyRunner {
  public:
-  StudyRunner(const StudyOptions& options, bool isQuiet, const std::atomic<bool>& stop)
+  StudyRunner(const StudyOptions& options, bool isQuiet, const std::atomic<bool>& stop, Diagnostics::Sink warn)
       : options_(options),
         isQuiet_(isQuiet),
         stop_(stop),
         times_(SnapshotTimes(*options.scene.seconds)),
         name_(SceneName(options.scene.scene)),
-        diagnostics_(Tell) {}
+        diagnostics_(std::move(warn)) {}
+
+  void Check() {
+    SceneOf("path", "");
+    for (const std::string& integrator : options_.integrators)
+      for (const std::string& strategy : Strategies()) SceneOf(integrator, strategy);
+  }
 
   Study Run() {
     const Scene& scene = SceneOf("path", "");
@@ -74,6 +81,11 @@ class StudyRunner {
     if (!isQuiet_) Tell(fmt::format("{}: {}", name_, fmt::format(format, std::forward<Args>(args)...)));
   }
 
+  /// The scene's own where none is asked for.
+  std::vector<std::string> Strategies() const {
+    return options_.strategies.empty() ? std::vector<std::string>{""} : options_.strategies;
+  }
+
   /// As it is loaded for that integrator.
   const Scene& SceneOf(const std::string& integrator, const std::string& strategy) {
     std::unique_ptr<Scene>& scene = scenes_[{strategy.empty() && IsLeftToDapple(integrator, ""),
@@ -96,9 +108,8 @@ class StudyRunner {
   }
 
   void AddContenders() {
-    const std::vector<std::string> own{""};
     for (const std::string& integrator : options_.integrators) {
-      for (const std::string& strategy : options_.strategies.empty() ? own : options_.strategies) {
+      for (const std::string& strategy : Strategies()) {
         Contender contender;
         contender.integrator = PlanOf(integrator, SceneOf(integrator, strategy)).choice.name;
         contender.strategy = strategy;
@@ -127,10 +138,20 @@ class StudyRunner {
     }
     Image reference = ReadImage(options_.referenceFile);
     // What is rendered must be comparable with it; told now, before hours of work.
-    const ComparablePair pair = MakeComparable(ToPicture(FilmOf(scene), scene.Settings().exposure), reference);
+    const ComparablePair pair = FitReference(ToPicture(FilmOf(scene), scene.Settings().exposure), reference);
     if (pair.test.Width() != scene.Settings().crop.Width() || pair.test.Height() != scene.Settings().crop.Height())
-      throw Error(FileLocation(options_.referenceFile), "the reference does not cover what is rendered");
+      throw Error(FileLocation(options_.referenceFile),
+                  fmt::format("the reference does not cover what is rendered of {}", options_.scene.scene));
     return pair.reference;
+  }
+
+  ComparablePair FitReference(const Image& picture, const Image& reference) const {
+    const auto sizeOf = [](const Image& image) { return fmt::format("{} x {}", image.fullSize.x, image.fullSize.y); };
+    const FileLocation file(options_.referenceFile);
+    if (picture.fullSize != reference.fullSize)
+      throw Error(file, fmt::format("the reference is of {} pixels, but {} is rendered with {}", sizeOf(reference),
+                                    options_.scene.scene, sizeOf(picture)));
+    return AtLocation(file, [&] { return MakeComparable(picture, reference); });
   }
 
   Image RenderReference(const Scene& scene) {
@@ -199,8 +220,13 @@ class StudyRunner {
 
 }  // namespace
 
+void CheckScene(const StudyOptions& options) {
+  const std::atomic<bool> stop = false;
+  StudyRunner(options, true, stop, [](const std::string&) {}).Check();
+}
+
 Study RunStudy(const StudyOptions& options, bool isQuiet, const std::atomic<bool>& stop) {
-  return StudyRunner(options, isQuiet, stop).Run();
+  return StudyRunner(options, isQuiet, stop, Tell).Run();
 }
 
 }  // namespace dapple

@@ -43,6 +43,10 @@ struct Study {
   StudyPictures pictures;
 };
 
+/// Reads and builds the scene as each contender needs it, and lets it go: throws the `Error` that `RunStudy` would
+/// before its first render. Warnings are left to that.
+void CheckScene(const StudyOptions& options);
+
 /// Runs go seed by seed through all contenders, so that a machine that gets slower is so for all. Tells what it does on
 /// the error stream unless `isQuiet`. Where `stop` becomes true, the run at hand is given up and the study ends with
 /// those before it. Throws `Error`.

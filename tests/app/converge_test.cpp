@@ -99,6 +99,27 @@ TEST_F(Converge, ASignalEndsItWithTheRunsThatAreComplete) {
   EXPECT_TRUE(Exists("out/index.html"));
 }
 
+// Else the studies of those before it would be lost.
+TEST_F(Converge, ASceneThatCannotBeReadIsToldBeforeAnyIsRendered) {
+  WriteScene("tiny.pbrt");
+  Write("broken.pbrt", "Camera \"perspective\"\nWorldBegin\n  Shap \"sphere\"\n");
+  const auto error = [&](const std::string& arguments) {
+    const ProgramResult result =
+        Run("converge tiny.pbrt " + arguments + " --integrators path --time 0.02 --seeds 1 -o out");
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_FALSE(Contains(result.err, "tiny: ")) << "nothing was rendered";
+    EXPECT_FALSE(Exists("out/reference-tiny.exr"));
+    return result.err;
+  };
+  EXPECT_TRUE(Contains(error("nowhere.pbrt"), "nowhere.pbrt: error: "));
+  EXPECT_TRUE(Contains(error("broken.pbrt"), "broken.pbrt:3:3: error: "));
+  Write("sky.pbrt", "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n");
+  EXPECT_TRUE(
+      Contains(Run("converge sky.pbrt tiny.pbrt --integrators path --strategies uniform --time 0.02 -o out").err,
+               "tiny.pbrt: error: strategy uniform: the scene has no infinite light"));
+  EXPECT_FALSE(Exists("out/reference-sky.exr"));
+}
+
 TEST_F(Converge, SeedsGoOnBehindTheGreatest) {
   WriteScene("tiny.pbrt");
   ASSERT_EQ(Run("converge tiny.pbrt --integrators path --time 0.02 --seeds 2 --seed 2147483647 --reference-time 0.05 "
@@ -144,10 +165,12 @@ TEST_F(Converge, AReferenceThatDoesNotFitIsTold) {
   const std::string rest = " --integrators path --time 0.02 --seeds 1 -o out --quiet";
   const ProgramResult wide = Run("converge tiny.pbrt --reference wide.exr" + rest);
   EXPECT_EQ(wide.exitCode, 1);
-  EXPECT_TRUE(Contains(wide.err, "cannot compare pictures of 24 x 16 and 25 x 16 pixels"));
+  EXPECT_EQ(wide.err, "wide.exr: error: the reference is of 25 x 16 pixels, but tiny.pbrt is rendered with 24 x 16\n");
   const ProgramResult half = Run("converge tiny.pbrt --reference part.exr" + rest);
   EXPECT_EQ(half.exitCode, 1);
-  EXPECT_TRUE(BeginsWith(half.err, "part.exr: error: the reference does not cover what is rendered"));
+  EXPECT_TRUE(BeginsWith(half.err, "part.exr: error: the reference does not cover what is rendered of tiny.pbrt"));
+  WriteExr(Path("depth.exr"), Image(24, 16, {"Z"}));
+  EXPECT_TRUE(BeginsWith(Run("converge tiny.pbrt --reference depth.exr" + rest).err, "depth.exr: error: "));
   EXPECT_EQ(Run("converge missing.pbrt" + rest).exitCode, 1);
 }
 
