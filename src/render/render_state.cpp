@@ -65,6 +65,8 @@ std::string HashOf(std::string_view head, std::string_view sums) {
 
 std::string ReadBytes(const std::string& path) {
   std::error_code failure;
+  if (std::filesystem::is_directory(path, failure))
+    throw Error(FileLocation(path), "expected the state of a render; this is a folder");
   if (!std::filesystem::is_regular_file(path, failure)) throw Error(FileLocation(path), "no such file");
   std::string bytes(std::filesystem::file_size(path, failure), '\0');
   std::ifstream file(path, std::ios::binary);

@@ -88,6 +88,14 @@ TEST_F(Resume, BeginsWhereThereIsNoCheckpointYet) {
   EXPECT_TRUE(Contains(result.err, "a.exr.checkpoint: not there yet; beginning with the first pass\n"));
 }
 
+TEST_F(Resume, AFolderInPlaceOfTheCheckpointIsToldAsOne) {
+  WriteScene("tiny.pbrt");
+  std::filesystem::create_directory(Path("a.exr.checkpoint"));
+  const ProgramResult result = Run("tiny.pbrt --quiet --integrator path --passes 2 -o a.exr --resume");
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_EQ(result.err, "a.exr.checkpoint: error: expected the state of a render; this is a folder\n");
+}
+
 TEST_F(Resume, RefusesTheCheckpointOfAnotherRenderAndSaysWhatDiffers) {
   WriteScene("tiny.pbrt");
   const std::string command = "--quiet -o a.exr --passes ";
