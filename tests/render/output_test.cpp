@@ -49,6 +49,18 @@ std::string MessageOf(F action) {
   return "no error";
 }
 
+TEST(Output, AFileThatCannotBeMadeIsToldByTheCheck) {
+  // Longer than any that a folder holds.
+  const std::string path = TempPath(std::string(220, 'a') + ".exr");
+  EXPECT_EQ(MessageOf([&] { CheckOutput(path); }), path + ": error: no file can be written there: File name too long");
+  // Root has the rights to write there, and still nothing can be made.
+  EXPECT_NE(MessageOf([] { CheckOutput("/proc/x.exr"); }), "no error");
+  const std::string fine = TempPath("fine.exr");
+  std::filesystem::remove(fine);
+  EXPECT_EQ(MessageOf([&] { CheckOutput(fine); }), "no error");
+  EXPECT_FALSE(std::filesystem::exists(fine)) << "it only looks";
+}
+
 TEST(Output, ExrKeepsPixelsAndRecord) {
   const std::string path = TempPath("image.exr");
   const Image image = SmallImage();
