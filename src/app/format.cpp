@@ -41,6 +41,7 @@ std::string FormatBytes(double bytes) {
 std::string FormatDuration(double seconds) {
   if (seconds < 9.995) return fmt::format("{:.2f} s", seconds);
   if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
+  if (seconds >= 1e9) return fmt::format("{:.3g} s", seconds);  // of decades nobody reads hours
   const auto whole = static_cast<int64_t>(std::llround(seconds));
   const int64_t hours = whole / 3600, minutes = whole / 60 % 60;
   if (hours == 0) return fmt::format("{}:{:02}", minutes, whole % 60);

@@ -14,7 +14,7 @@ namespace dapple {
 /// "0", "812", "12.3 k", "4.56 M": three digits and a prefix; `value` >= 0.
 std::string FormatCount(double value);
 
-/// "0.42 s", "12.3 s", "4:05", "3:04:05"; `seconds` >= 0.
+/// "0.42 s", "12.3 s", "4:05", "3:04:05", "1e+300 s"; `seconds` >= 0.
 std::string FormatDuration(double seconds);
 
 /// "812 B", "4.56 MB" (powers of 1000).

@@ -81,11 +81,11 @@ const std::string& ProgressDisplay::ErrorOf(const RenderProgress& progress) {
 }
 
 void ProgressDisplay::ShowLine(const RenderProgress& progress) {
-  const int tenths = static_cast<int>(std::floor(progress.fraction * 10 + 1e-9));
+  const int percent = static_cast<int>(std::floor(progress.fraction * 100 + 1e-9)), tenths = percent / 10;
   // The first pass always has its line: it tells how fast the rest will go.
   if (tenths <= tenthsShown_ && progress.passesDone != 1) return;
   tenthsShown_ = tenths;
-  Tell(fmt::format("{:3} %: {}", tenths * 10, Describe(progress, ErrorOf(progress))));
+  Tell(fmt::format("{:3} %: {}", percent, Describe(progress, ErrorOf(progress))));
 }
 
 }  // namespace dapple

@@ -89,8 +89,11 @@ void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Fi
                   const std::optional<ErrorEstimate>& error) {
   const PassStats& stats = result.stats;
   const auto count = [](int64_t n) { return FormatCount(static_cast<double>(n)); };
-  fmt::print("{} in {} (of which preparation {})\n", FormatNumberOf(result.passes, "pass", "passes"),
+  fmt::print("{} in {} (of which preparation {})", FormatNumberOf(result.passes, "pass", "passes"),
              FormatDuration(result.seconds), FormatDuration(result.prepareSeconds));
+  if (film.PassCount() > result.passes)
+    fmt::print("; with those before, {}", FormatNumberOf(film.PassCount(), "pass", "passes"));
+  fmt::print("\n");
   fmt::print("rays      {} ({}): {} camera, {} shadow, {} photon, {} probe\n", count(stats.Rays()),
              Rate(stats.Rays(), result.seconds), count(stats.cameraRays), count(stats.shadowRays),
              count(stats.photonRays), count(stats.probeRays));

@@ -242,7 +242,8 @@ TEST_F(Program, SaysWhatItDid) {
   ASSERT_EQ(result.exitCode, 0) << result.err;
   // A glass sphere under a point light is for photons; the scene's four samples a pixel are four passes.
   EXPECT_TRUE(Contains(result.err, "tiny.pbrt: 24 x 16, hybrid ("));
-  EXPECT_TRUE(Contains(result.err, "100 %: 4 passes, "));
+  for (const char* text : {" 25 %: 1 pass, ", " 75 %: 3 passes, ", "100 %: 4 passes, "})
+    EXPECT_TRUE(Contains(result.err, text));
   EXPECT_FALSE(Contains(result.err, "\x1b")) << "no terminal, no control characters";
   for (const char* text : {"4 passes in ", "rays ", "photons ", "noise ", "memory "})
     EXPECT_TRUE(Contains(result.out, text));
@@ -321,6 +322,14 @@ TEST_F(Program, ASignalEndsTheRenderAndThePictureIsWritten) {
     EXPECT_TRUE(Exists("a.exr.checkpoint"));
     std::filesystem::remove(Path("a.exr"));
   }
+}
+
+TEST_F(Program, TimesBeyondAllClocksAreShownAsTheyAre) {
+  WriteScene("tiny.pbrt");
+  const ProgramResult result =
+      RunAndSignal("tiny.pbrt --integrator path -o a.exr --time 1e300", SIGTERM, " %: 1 pass, ");
+  EXPECT_EQ(result.exitCode, 128 + SIGTERM);
+  EXPECT_TRUE(Contains(result.err, ", 1e+300 s left"));
 }
 
 TEST_F(Program, WarnsOnceOfASceneInWhichNothingEmitsLight) {

@@ -88,6 +88,17 @@ TEST_F(Resume, BeginsWhereThereIsNoCheckpointYet) {
   EXPECT_TRUE(Contains(result.err, "a.exr.checkpoint: not there yet; beginning with the first pass\n"));
 }
 
+TEST_F(Resume, TheSummaryCountsThePassesOfAllParts) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --integrator path -o a.exr --checkpoint 60 ";
+  const ProgramResult first = Run(command + "--passes 4");
+  EXPECT_TRUE(Contains(first.out, "\n4 passes in "));
+  EXPECT_FALSE(Contains(first.out, "with those before"));
+  const ProgramResult second = Run(command + "--passes 6 --resume");
+  EXPECT_TRUE(Contains(second.out, "\n2 passes in "));
+  EXPECT_TRUE(Contains(second.out, "); with those before, 6 passes\n"));
+}
+
 TEST_F(Resume, AFolderInPlaceOfTheCheckpointIsToldAsOne) {
   WriteScene("tiny.pbrt");
   std::filesystem::create_directory(Path("a.exr.checkpoint"));
