@@ -173,7 +173,7 @@ void AddCompareCommand(CLI::App& program, Action* action) {
       ->type_name("N");
   command->add_flag("--json", options->isJson, "Print JSON");
   command->add_option("--threads", options->threads, "Threads; 0: one a processor")
-      ->check(CLI::Range(0, kMaxThreads).description(""))
+      ->check(CheckWhole(0, kMaxThreads))
       ->type_name("N");
   command->callback([options, action] {
     RequireUsable(*options);

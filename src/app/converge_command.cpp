@@ -192,7 +192,7 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
   command
       ->add_option("--seeds", options->seeds,
                    "Runs of each with seeds of their own: their spread gives the slopes' intervals; 3 by default")
-      ->check(CLI::Range(1, 1000).description(""))
+      ->check(CheckWhole(1, 1000))
       ->type_name("N");
   command
       ->add_option(
@@ -206,7 +206,7 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
       ->required()
       ->type_name("FOLDER");
   command->add_option("--images", options->imageTimes, "Pictures at N times in the page, each four times the last; 5")
-      ->check(CLI::Range(1, 5).description(""))
+      ->check(CheckWhole(1, 5))
       ->type_name("N");
   command->add_flag("--quiet", options->isQuiet, "No progress; warnings and errors only");
   AddReferenceGroup(command, options.get());

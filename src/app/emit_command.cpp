@@ -96,19 +96,21 @@ void AddEmitCommand(CLI::App& program, Action* action) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   command->add_option("--rays", options->emit.count, "Emit N rays; 1000 by default")
-      ->check(CLI::Range(1, kMostRays).description(""))
+      ->check(CheckWhole(1, kMostRays))
       ->type_name("N");
   command
       ->add_option(
           "--light", options->emit.light,
           "Of this light only, by the number that `dapple info` shows; otherwise each ray is of a light chosen "
           "by power")
-      ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
+      ->check(CheckWhole(0, std::numeric_limits<int>::max()))
       ->type_name("K");
-  command->add_option("--seed", options->emit.seed, "Seed of all random numbers")->type_name("S");
+  command->add_option("--seed", options->emit.seed, "Seed of all random numbers")
+      ->check(CheckWhole(std::numeric_limits<int>::min(), std::numeric_limits<int>::max()))
+      ->type_name("S");
   command
       ->add_option("--threads", options->threads, "Threads; 0: one a processor. The rays are the same with any number")
-      ->check(CLI::Range(0, kMaxThreads).description(""))
+      ->check(CheckWhole(0, kMaxThreads))
       ->type_name("N");
   command->callback([options, action] {
     RequireNoClash({{"--output", options->output}}, {{"the scene", options->scene.scene}});

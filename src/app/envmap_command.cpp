@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -134,12 +135,14 @@ void AddEnvmapCommand(CLI::App& program, Action* action) {
       command->add_option("--sample-image", options->sampleImage, "Picture of the map and of directions drawn from it")
           ->type_name("FILE");
   command->add_option("--samples", options->samples, "Draw N directions; 1000 by default")
-      ->check(CLI::Range(1, 1'000'000).description(""))
+      ->check(CheckWhole(1, 1'000'000))
       ->needs(sampleImage)
       ->type_name("N");
-  command->add_option("--seed", options->seed, "Seed of the directions")->type_name("S");
+  command->add_option("--seed", options->seed, "Seed of the directions")
+      ->check(CheckWhole(std::numeric_limits<int>::min(), std::numeric_limits<int>::max()))
+      ->type_name("S");
   command->add_option("--threads", options->threads, "Threads; 0: one a processor")
-      ->check(CLI::Range(0, kMaxThreads).description(""))
+      ->check(CheckWhole(0, kMaxThreads))
       ->type_name("N");
   command->callback([options, action] {
     std::vector<NamedFile> written;

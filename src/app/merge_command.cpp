@@ -14,6 +14,7 @@
 #include "src/app/format.h"
 #include "src/app/named_files.h"
 #include "src/app/render_outputs.h"
+#include "src/app/scene_options.h"
 #include "src/render/render_state.h"
 
 namespace dapple {
@@ -62,7 +63,7 @@ void AddMergeCommand(CLI::App& program, Action* action) {
   command
       ->add_option("--passes", options->passes,
                    "How many passes there are in all, so that it is told where the last are missing too")
-      ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
+      ->check(CheckWhole(1, std::numeric_limits<int>::max()))
       ->type_name("N");
   command->callback([options, action] {
     // Where a part is replaced by the sum of all nothing is lost.

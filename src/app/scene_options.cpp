@@ -1,6 +1,7 @@
 #include "src/app/scene_options.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -26,6 +27,7 @@ namespace dapple {
 
 namespace {
 
+constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
 constexpr int kMaxLightSamples = 1 << 16, kMaxCameraSamples = 1 << 12;
 
 /// The numbers of `text`, which `separator` parts; nothing where it holds anything else.
@@ -68,8 +70,10 @@ void ParsePasses(const std::string& text, SceneOptions* options) {
   options->isPart = n && n->size() == 2;
   if (n && n->size() <= 2) options->passes = options->isPart ? PassRange{(*n)[0], (*n)[1]} : PassRange{0, (*n)[0]};
   if (options->passes && options->passes->begin >= 0 && !options->passes->IsEmpty()) return;
-  throw CLI::ValidationError("--passes",
-                             fmt::format("expected a number N >= 1, or a range A:B with 0 <= A < B, not '{}'", text));
+  throw CLI::ValidationError(
+      "--passes", fmt::format("expected a whole number N from 1 to {0}, or a range A:B with 0 <= A < B <= {0}, "
+                              "not '{1}'",
+                              kMost, text));
 }
 
 DirectTechnique ParseDirect(const std::string& text) {
@@ -135,20 +139,23 @@ void AddBudgetGroup(CLI::App* command, SceneOptions* options) {
 
 void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
   const std::string group = kRenderGroup;
-  command->add_option("--seed", options->seed, "Seed of all random numbers")->type_name("N")->group(group);
+  command->add_option("--seed", options->seed, "Seed of all random numbers")
+      ->check(CheckWhole(kLeast, kMost))
+      ->type_name("N")
+      ->group(group);
   command->add_option("--max-depth", options->maxDepth, "Scattering events on a path")
-      ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
+      ->check(CheckWhole(0, kMost))
       ->type_name("N")
       ->group(group);
   command
       ->add_option("--camera-samples", options->cameraSamples,
                    "path: as many rays a pass as N camera paths a pixel take, more of them where a pilot finds noise; "
                    "without it one path through each pixel, or with auto N = 4")
-      ->check(CLI::Range(1, kMaxCameraSamples).description(""))
+      ->check(CheckWhole(1, kMaxCameraSamples))
       ->type_name("N")
       ->group(group);
   command->add_option("--photons", options->photons, "Light paths a pass")
-      ->check(CLI::Range(1, std::numeric_limits<int>::max()).description(""))
+      ->check(CheckWhole(1, kMost))
       ->type_name("N")
       ->group(group);
   command->add_option("--radius", options->radius, "Starting radius of photon lookups, in the scene's units")
@@ -169,7 +176,7 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
       ->add_option("--light-samples", options->lightSamples,
                    "Next-event samples at each vertex of a camera path; by default 1, or an infinite light's own "
                    "\"samples\"")
-      ->check(CLI::Range(1, kMaxLightSamples).description(""))
+      ->check(CheckWhole(1, kMaxLightSamples))
       ->type_name("N")
       ->group(group);
   command
@@ -181,7 +188,7 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
   command
       ->add_option("--threads", options->threads,
                    "Threads; 0: one a processor. The picture is the same with any number")
-      ->check(CLI::Range(0, kMaxThreads).description(""))
+      ->check(CheckWhole(0, kMaxThreads))
       ->type_name("N")
       ->group(group);
 }
@@ -259,6 +266,17 @@ std::string CheckPositive(const std::string& text) {
   const auto number = SplitNumbers<double>(text, ',');
   const bool isPositive = number && number->size() == 1 && number->front() > 0 && std::isfinite(number->front());
   return isPositive ? "" : fmt::format("expected a number above 0, not '{}'", text);
+}
+
+std::function<std::string(const std::string&)> CheckWhole(int least, int most) {
+  return [least, most](const std::string& text) -> std::string {
+    int number = 0;
+    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, status] = std::from_chars(begin, text.data() + text.size(), number);
+    const bool isWhole = status == std::errc() && end == text.data() + text.size();
+    if (isWhole && number >= least && number <= most) return "";
+    return fmt::format("expected a whole number from {} to {}, in digits alone, not '{}'", least, most, text);
+  };
 }
 
 std::vector<std::string> IntegratorChoices() {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ inline constexpr int kMaxThreads = 1024;
 
 /// What is wrong with an option's `text` as a finite number above 0; empty where nothing is.
 std::string CheckPositive(const std::string& text);
+
+/// A check of an option's text: what is wrong with it as a whole number within these bounds.
+std::function<std::string(const std::string&)> CheckWhole(int least, int most);
 
 /// Names of integrators as the command line takes them: "auto" and all that `MakeIntegrator` knows.
 std::vector<std::string> IntegratorChoices();

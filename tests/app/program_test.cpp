@@ -200,6 +200,28 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
   EXPECT_FALSE(Exists("tiny.exr"));
 }
 
+TEST_F(Program, SaysWhichNumbersItTakes) {
+  const auto error = [&](const std::string& arguments) {
+    const ProgramResult result = Run("tiny.pbrt " + arguments);
+    EXPECT_EQ(result.exitCode, 2) << arguments;
+    return result.err;
+  };
+  EXPECT_TRUE(BeginsWith(error("--photons 1e6"),
+                         "error: --photons: expected a whole number from 1 to 2147483647, in "
+                         "digits alone, not '1e6'\n"));
+  EXPECT_TRUE(BeginsWith(error("--passes 99999999999"),
+                         "error: --passes: expected a whole number N from 1 to 2147483647, or a range A:B with "
+                         "0 <= A < B <= 2147483647, not '99999999999'\n"));
+  for (const std::string seed : {"18446744073709551615", "1.5", "x"})
+    EXPECT_TRUE(BeginsWith(error("--seed " + seed),
+                           "error: --seed: expected a whole number from -2147483648 to "
+                           "2147483647, in digits alone, not '" +
+                               seed + "'\n"));
+  EXPECT_TRUE(Contains(error("--threads 1025"), "expected a whole number from 0 to 1024"));
+  WriteScene("tiny.pbrt");
+  EXPECT_EQ(Run("tiny.pbrt --quiet --integrator path --passes 1 --seed=-2147483648").exitCode, 0);
+}
+
 TEST_F(Program, AMissingSceneIsAnErrorAtItsName) {
   for (const char* command : {"render", "info"}) {
     const ProgramResult result = Run(std::string(command) + " nowhere.pbrt");
