@@ -88,8 +88,9 @@ class StudyRunner {
 
   /// As it is loaded for that integrator.
   const Scene& SceneOf(const std::string& integrator, const std::string& strategy) {
-    std::unique_ptr<Scene>& scene = scenes_[{strategy.empty() && IsLeftToDapple(integrator, ""),
-                                             DrawsTowardLights(integrator, options_.scene.direct), strategy}];
+    std::unique_ptr<Scene>& scene =
+        scenes_[{strategy.empty() && IsLeftToDapple(integrator, ""),
+                 DrawsTowardLights(integrator, options_.scene.direct.value_or(DirectTechnique::Mis)), strategy}];
     if (!scene) {
       SceneOptions options = options_.scene;
       options.integrator = integrator;
@@ -119,6 +120,10 @@ class StudyRunner {
         requested_.push_back(integrator);
       }
     }
+    std::vector<std::string> integrators;
+    for (const Contender& contender : study_.convergence.contenders) integrators.push_back(contender.integrator);
+    integrators.erase(std::unique(integrators.begin(), integrators.end()), integrators.end());  // by strategies
+    WarnOfUnused(options_.scene, integrators, diagnostics_);
   }
 
   Image MakeReference(const Scene& scene) {

@@ -114,6 +114,7 @@ int RunInfo(const SceneOptions& options) {
   const LoadedScene loaded = Load(options, diagnostics);
   const int64_t loadedBytes = PeakMemoryBytes();
   const RenderPlan plan = MakePlan(*loaded.scene, options, diagnostics);
+  WarnOfUnused(options, {plan.choice.name}, diagnostics);
   const PassForecast forecast = plan.integrator->Forecast(*loaded.scene, SeedFrom(plan.seed));
   PrintLine("scene", options.scene);
   PrintLine("format", fmt::format("pbrt version {}: {}", loaded.version, loaded.versionReason));
@@ -130,7 +131,10 @@ void AddInfoCommand(CLI::App& program, Action* action) {
   CLI::App* const command = program.add_subcommand("info", "Say what a scene holds and how it would be rendered");
   const auto options = std::make_shared<SceneOptions>();
   options->AddTo(command);
-  command->callback([options, action] { *action = [options] { return RunInfo(*options); }; });
+  command->callback([options, action] {
+    RequireDirect(*options, {options->integrator});
+    *action = [options] { return RunInfo(*options); };
+  });
 }
 
 }  // namespace dapple

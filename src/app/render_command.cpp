@@ -282,6 +282,7 @@ int RunRender(RenderOptions options) {
       !clash.empty())
     throw Error(FileLocation(options.scene), clash);
   RenderPlan plan = MakePlan(scene, options, diagnostics);
+  WarnOfUnused(options, {plan.choice.name}, diagnostics);
   RequireFilm(scene.Settings(), options.aovs, TracksBlur(options, plan), MachineMemoryBytes());
   plan.budget.error = options.error;
   // What the scene's file says bounds no one who asks for an error.

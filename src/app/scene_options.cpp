@@ -250,6 +250,27 @@ void SetStrategy(const SceneOptions& options, SceneDescription* description) {
   }
 }
 
+/// An option that some algorithms have no use for.
+struct PartialOption {
+  std::string_view name;
+  bool (*isGiven)(const SceneOptions&);
+  std::vector<std::string_view> users;
+};
+
+std::vector<PartialOption> PartialOptions() {
+  using Options = const SceneOptions&;
+  const std::vector<std::string_view> withPhotons{"light_tracing", "photon_mapping", "sppm", "hybrid"};
+  const std::vector<std::string_view> withLookups{"photon_mapping", "sppm", "hybrid"};
+  const std::vector<std::string_view> fromCamera{"path", "photon_mapping", "sppm", "hybrid"};
+  return {{"--camera-samples", [](Options o) { return o.cameraSamples.has_value(); }, {"path"}},
+          {"--photons", [](Options o) { return o.photons.has_value(); }, withPhotons},
+          {"--no-guide", [](Options o) { return o.noGuide; }, withPhotons},
+          {"--radius", [](Options o) { return o.radius.has_value(); }, withLookups},
+          {"--kernel", [](Options o) { return o.kernel.has_value(); }, withLookups},
+          {"--direct", [](Options o) { return o.direct.has_value(); }, fromCamera},
+          {"--light-samples", [](Options o) { return o.lightSamples.has_value(); }, fromCamera}};
+}
+
 void WarnOfLackingIntegrator(const RenderSettings& settings, const IntegratorChoice& choice, Diagnostics& diagnostics) {
   const std::vector<std::string_view> known = IntegratorNames();
   if (settings.integrator.empty() || std::find(known.begin(), known.end(), settings.integrator) != known.end()) return;
@@ -309,6 +330,25 @@ void SceneOptions::AddFixedTo(CLI::App* command) {
   AddAlgorithmGroup(command, this);
 }
 
+void RequireDirect(const SceneOptions& options, const std::vector<std::string>& integrators) {
+  const bool isHybrid = std::ranges::find(integrators, "hybrid") != integrators.end();
+  if (isHybrid && options.direct.value_or(DirectTechnique::Mis) != DirectTechnique::Mis)
+    throw CLI::ValidationError("--direct", "hybrid joins all techniques: expected mis, or integrator path or sppm");
+}
+
+void WarnOfUnused(const SceneOptions& options, const std::vector<std::string>& integrators, Diagnostics& diagnostics) {
+  const auto hasEffect = [](const PartialOption& option, const std::string& integrator) {
+    return std::ranges::find(option.users, integrator) != option.users.end();
+  };
+  for (const PartialOption& option : PartialOptions()) {
+    if (!option.isGiven(options)) continue;
+    if (std::ranges::any_of(integrators, [&](const std::string& name) { return hasEffect(option, name); })) continue;
+    diagnostics.Warn(FileLocation(options.scene),
+                     fmt::format("{} is for {}; it has no effect on {}", option.name, fmt::join(option.users, ", "),
+                                 fmt::join(integrators, ", ")));
+  }
+}
+
 namespace {
 
 LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics) {
@@ -323,8 +363,9 @@ LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics)
   BuildOptions build;
   build.resolution = options.resolution;
   build.cropWindow = options.crop;
-  build.drawsTowardLights = !options.onlyEmission &&
-                            DrawsTowardLights(options.integrator.empty() ? ofFile : options.integrator, options.direct);
+  build.drawsTowardLights =
+      !options.onlyEmission && DrawsTowardLights(options.integrator.empty() ? ofFile : options.integrator,
+                                                 options.direct.value_or(DirectTechnique::Mis));
   build.lightSamples = options.lightSamples;
   // Where no direction is drawn all ways to draw them give the same bits.
   SceneIdentity identity{HashSceneContent(description),
@@ -354,18 +395,15 @@ RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics
   plan.options.photonsPerPass = options.photons;
   plan.options.cameraSamples = options.cameraSamples;
   plan.options.radius = options.radius;
-  plan.options.kernel = options.kernel;
+  plan.options.kernel = options.kernel.value_or(plan.options.kernel);
   plan.options.guideEmission = !options.noGuide;
-  plan.options.direct = {options.direct, options.lightSamples};
+  plan.options.direct = {options.direct.value_or(DirectTechnique::Mis), options.lightSamples};
   plan.choice = ResolveIntegrator(options.integrator, scene, plan.options, SeedFrom(plan.seed));
   plan.options.guide = plan.choice.guide;
   if (plan.choice.name == "path") {
     plan.options.cameraSamples = Either(options.cameraSamples, plan.choice.cameraSamples);
-  } else if (options.cameraSamples) {
+  } else {
     plan.options.cameraSamples.reset();
-    diagnostics.Warn(
-        FileLocation(options.scene),
-        fmt::format("--camera-samples is for path; {} takes as many camera paths as it finds best", plan.choice.name));
   }
   if (options.integrator.empty()) WarnOfLackingIntegrator(settings, plan.choice, diagnostics);
   // What a file tunes for an algorithm holds for that one alone: others choose by themselves.

@@ -53,10 +53,10 @@ struct SceneOptions {
   std::optional<int> photons;
   std::optional<int> cameraSamples;
   std::optional<double> radius;
-  KernelShape kernel = KernelShape::Epanechnikov;
+  std::optional<KernelShape> kernel;
   bool noGuide = false;
   std::optional<int> lightSamples;
-  DirectTechnique direct = DirectTechnique::Mis;
+  std::optional<DirectTechnique> direct;
   bool onlyEmission = false;  ///< the command draws from the lights' side alone
   int threads = 0;            ///< 0: one a processor
   /// How infinite lights are sampled, in place of what the file says: SAMPLING/EMISSION, or one name for both sides
@@ -69,6 +69,12 @@ struct SceneOptions {
   /// Only the scene and the version of its format.
   void AddFileTo(CLI::App* command);
 };
+
+/// Throws `CLI::ValidationError` where one of the integrators cannot find direct light as the options say.
+void RequireDirect(const SceneOptions& options, const std::vector<std::string>& integrators);
+
+/// Warns of each option that is given and has no effect on any of the integrators.
+void WarnOfUnused(const SceneOptions& options, const std::vector<std::string>& integrators, Diagnostics& diagnostics);
 
 /// A scene and what its file was.
 struct LoadedScene {
@@ -94,7 +100,8 @@ struct RenderPlan {
 };
 
 /// The command line's values, else the scene's, else the integrator's. Warns of an integrator of the scene's that
-/// Dapple lacks, unless the command line names one. Throws `Error` for an unknown integrator of the command line's.
+/// Dapple lacks, unless the command line names one, and not of options without effect (`WarnOfUnused`). Throws `Error`
+/// for an unknown integrator of the command line's.
 RenderPlan MakePlan(const Scene& scene, const SceneOptions& options, Diagnostics& diagnostics);
 
 }  // namespace dapple

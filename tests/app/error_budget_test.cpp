@@ -15,9 +15,9 @@ class ErrorBudget : public ProgramTest {
  protected:
   void SetUp() override { WriteSceneOfSharedWork("shared.pbrt"); }
   /// Renders to FILE with these options and gives the passes that it took.
-  int Render(const std::string& file, const std::string& options) const {
-    const ProgramResult result =
-        Run("shared.pbrt --quiet --photons 9000 --no-guide --radius 0.2 -o " + file + " " + options);
+  int Render(const std::string& file, const std::string& integrator, const std::string& options) const {
+    const ProgramResult result = Run("shared.pbrt --quiet --integrator " + integrator + " " +
+                                     ShortRender(integrator, 9000) + "-o " + file + " " + options);
     EXPECT_EQ(result.exitCode, 0) << options;
     EXPECT_EQ(result.err, "") << options;
     return std::get<int>(ReadExrMetadata(Path(file)).at("passes"));
@@ -31,35 +31,35 @@ class ErrorBudget : public ProgramTest {
 // The estimate changes no bit of the picture, and where it ends the render no thread count does.
 TEST_F(ErrorBudget, IsThePictureOfItsPassesWithAnyThreads) {
   for (const std::string integrator : {"path", "sppm", "hybrid", "photon_mapping", "light_tracing"}) {
-    const std::string options = "--error 0.25 --passes 32 --integrator " + integrator;
-    const int passes = Render("a.exr", options + " --threads 1");
+    const std::string options = "--error 0.25 --passes 32";
+    const int passes = Render("a.exr", integrator, options + " --threads 1");
     const double error = std::get<double>(ReadExrMetadata(Path("a.exr")).at("error"));
     EXPECT_LT(error, 0.25) << integrator;
     EXPECT_GT(error, 0.001) << integrator;
     EXPECT_EQ(passes % 2, 0);
     EXPECT_GE(passes, 8);
-    EXPECT_EQ(Render("b.exr", options + " --threads 3"), passes);
+    EXPECT_EQ(Render("b.exr", integrator, options + " --threads 3"), passes);
     EXPECT_TRUE(Read("a.exr") == Read("b.exr")) << integrator;
-    Render("c.exr", "--passes " + std::to_string(passes) + " --integrator " + integrator);
+    Render("c.exr", integrator, "--passes " + std::to_string(passes));
     EXPECT_TRUE(IsSamePicture("a.exr", "c.exr")) << integrator;
     EXPECT_EQ(ReadExrMetadata(Path("c.exr")).count("error"), 0u);
   }
 }
 
 TEST_F(ErrorBudget, GoesOnAfterABreak) {
-  const std::string options = "--integrator sppm --error 0.1";
-  const int passes = Render("a.exr", options);
+  const std::string options = "--error 0.1";
+  const int passes = Render("a.exr", "sppm", options);
   ASSERT_GT(passes, 5);
   const ProgramResult part =
       Run("shared.pbrt --quiet --photons 9000 --no-guide --radius 0.2 --integrator sppm "
           "--error 0.1 --passes 5 --checkpoint 60 -o b.exr");
   EXPECT_TRUE(Contains(part.err, "warning: the error is about ")) << "not reached, and told so";
   EXPECT_EQ(part.exitCode, 0);
-  EXPECT_EQ(Render("b.exr", options + " --resume"), passes);
+  EXPECT_EQ(Render("b.exr", "sppm", options + " --resume"), passes);
   EXPECT_TRUE(Read("a.exr") == Read("b.exr"));
   // What was rendered without an eye on the bias cannot tell it.
   std::filesystem::remove(Path("b.exr.checkpoint"));
-  Render("b.exr", "--integrator sppm --passes 5 --checkpoint 60");
+  Render("b.exr", "sppm", "--passes 5 --checkpoint 60");
   const ProgramResult other =
       Run("shared.pbrt --quiet --photons 9000 --no-guide --radius 0.2 --integrator sppm "
           "--error 0.1 --resume -o b.exr");

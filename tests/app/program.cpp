@@ -65,6 +65,11 @@ testing::AssertionResult BeginsWith(const std::string& text, const std::string& 
   return testing::AssertionFailure() << '"' << beginning << "\" does not begin:\n" << text;
 }
 
+std::string ShortRender(std::string_view integrator, int photons) {
+  if (integrator == "path") return "";
+  return "--no-guide --photons " + std::to_string(photons) + (integrator == "light_tracing" ? " " : " --radius 0.2 ");
+}
+
 ProgramTest::ProgramTest() {
   const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
   folder_ = std::filesystem::path(testing::TempDir()) /

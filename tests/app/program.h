@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,6 +18,9 @@ struct ProgramResult {
 
 testing::AssertionResult Contains(const std::string& text, const std::string& part);
 testing::AssertionResult BeginsWith(const std::string& text, const std::string& beginning);
+
+/// Options, each with a space behind it, of a short render without pilots: those that the integrator takes.
+std::string ShortRender(std::string_view integrator, int photons);
 
 class ProgramTest : public testing::Test {
  protected:

@@ -57,7 +57,7 @@ TEST_F(Program, APassOfManyCameraPathsCountsAsMany) {
   EXPECT_EQ(passes(6, "--integrator hybrid --photons 10 --camera-samples 4"), 6);
   EXPECT_TRUE(
       Contains(Run("many.pbrt --integrator hybrid --photons 10 --passes 1 --quiet -o a.exr --camera-samples 4").err,
-               "warning: --camera-samples is for path"));
+               "many.pbrt: warning: --camera-samples is for path; it has no effect on hybrid\n"));
 }
 
 TEST_F(Program, StatisticsCountWhatWasDone) {
@@ -344,6 +344,33 @@ TEST_F(Program, ASignalEndsTheRenderAndThePictureIsWritten) {
     EXPECT_TRUE(Exists("a.exr.checkpoint"));
     std::filesystem::remove(Path("a.exr"));
   }
+}
+
+TEST_F(Program, WarnsOfOptionsThatTheIntegratorHasNoUseFor) {
+  WriteScene("tiny.pbrt");
+  const auto warnings = [&](const std::string& options) {
+    const ProgramResult result = Run("tiny.pbrt --quiet --passes 1 -o a.exr --integrator " + options);
+    EXPECT_EQ(result.exitCode, 0);
+    return result.err;
+  };
+  const std::string path = warnings("path --photons 5 --radius 2 --kernel cone --no-guide --direct mis");
+  EXPECT_EQ(
+      path,
+      "tiny.pbrt: warning: --photons is for light_tracing, photon_mapping, sppm, hybrid; it has no effect on path\n"
+      "tiny.pbrt: warning: --no-guide is for light_tracing, photon_mapping, sppm, hybrid; it has no effect on path\n"
+      "tiny.pbrt: warning: --radius is for photon_mapping, sppm, hybrid; it has no effect on path\n"
+      "tiny.pbrt: warning: --kernel is for photon_mapping, sppm, hybrid; it has no effect on path\n");
+  const std::string light = warnings("light_tracing --direct bsdf --light-samples 16 --radius 2 --kernel cone");
+  for (const char* option : {"--direct", "--light-samples", "--radius", "--kernel"})
+    EXPECT_TRUE(Contains(light, std::string("tiny.pbrt: warning: ") + option + " is for ")) << option;
+  EXPECT_EQ(std::ranges::count(light, '\n'), 4);
+  EXPECT_EQ(warnings("sppm --photons 500 --radius 0.2 --kernel cone --no-guide --direct light --light-samples 2"), "");
+  EXPECT_EQ(warnings("path --camera-samples 2 --direct light --light-samples 2"), "");
+  EXPECT_TRUE(Contains(Run("info tiny.pbrt --integrator path --photons 5").err, "warning: --photons is for "));
+  // Of several integrators one that takes it is enough.
+  const std::string study = " --time 0.02 --seeds 1 --photons 500 --quiet -o out";
+  EXPECT_EQ(Run("converge tiny.pbrt --integrators path,light_tracing" + study).err, "");
+  EXPECT_TRUE(Contains(Run("converge tiny.pbrt --integrators path" + study).err, "warning: --photons is for "));
 }
 
 TEST_F(Program, TimesBeyondAllClocksAreShownAsTheyAre) {

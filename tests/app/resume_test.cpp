@@ -22,8 +22,8 @@ class ReproducibleFile : public ProgramTest, public testing::WithParamInterface<
   /// Renders with these further options and gives the file. Without pilots, which take most of the time of so short a
   /// render; tests/slow has them.
   std::string Render(const std::string& options) const {
-    const std::string command = "shared.pbrt --quiet --photons 9000 --no-guide --radius 0.2 --integrator " +
-                                std::string(GetParam()) + " -o a.exr " + options;
+    const std::string command = "shared.pbrt --quiet --integrator " + std::string(GetParam()) + " " +
+                                ShortRender(GetParam(), 9000) + "-o a.exr " + options;
     const ProgramResult result = Run(command);
     EXPECT_EQ(result.exitCode, 0) << command;
     EXPECT_EQ(result.err, "") << command;
