@@ -13,6 +13,7 @@
 #include "src/app/command.h"
 #include "src/app/format.h"
 #include "src/app/named_files.h"
+#include "src/app/render_outputs.h"
 #include "src/app/scene_options.h"
 #include "src/base/parallel.h"
 #include "src/image/false_color.h"
@@ -158,6 +159,7 @@ void AddCompareCommand(CLI::App& program, Action* action) {
       ->add_option("-d,--difference", options->pictures,
                    "Picture of the differences: .png in false colours or .exr with the values; once for each image")
       ->allow_extra_args(false)
+      ->check(CheckPictureName)
       ->type_name("FILE");
   command
       ->add_option("--of", options->of,

@@ -214,6 +214,8 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
   command->callback([options, action] {
     if (!options->referenceFile.empty() && options->scenes.size() > 1)
       throw CLI::ValidationError("--reference", "it is of one scene, and several were given");
+    RequireDirect(options->scene, options->integrators);
+    RequireDirect(options->scene, {options->referenceIntegrator});
     RequireNoClash(ReferencesWrittenBy(*options), {});
     *action = [options] { return RunConverge(*options); };
   });

@@ -34,12 +34,17 @@ struct EmitCommandOptions {
 
 using RayFormat = std::string (*)(const Scene&, const EmittedRays&);
 
+/// Null for an ending that is none of a table.
 RayFormat FormatOf(const std::string& path) {
   const std::string extension = LowerCaseExtension(path);
   if (extension == ".csv") return RaysToCsv;
   if (extension == ".json") return RaysToJson;
   if (extension == ".ply") return RaysToPly;
-  throw Error(FileLocation(path), "expected a file name that ends in .csv, .json or .ply");
+  return nullptr;
+}
+
+std::string CheckTableName(const std::string& path) {
+  return FormatOf(path) ? "" : fmt::format("expected a file name that ends in .csv, .json or .ply, not '{}'", path);
 }
 
 /// Sums of millions of colours need more than floats: the red, green and blue of one.
@@ -94,6 +99,7 @@ void AddEmitCommand(CLI::App& program, Action* action) {
   command->add_option("-o,--output", options->output, "The table: .csv, .json or .ply")
       ->required()
       ->allow_extra_args(false)
+      ->check(CheckTableName)
       ->type_name("FILE");
   command->add_option("--rays", options->emit.count, "Emit N rays; 1000 by default")
       ->check(CheckWhole(1, kMostRays))

@@ -16,6 +16,7 @@
 #include "src/app/environment_pictures.h"
 #include "src/app/format.h"
 #include "src/app/named_files.h"
+#include "src/app/render_outputs.h"
 #include "src/app/scene_options.h"
 #include "src/base/numerics.h"
 #include "src/base/parallel.h"
@@ -130,9 +131,11 @@ void AddEnvmapCommand(CLI::App& program, Action* action) {
       ->check(CLI::IsMember({"latlong", "equalarea"}).description(""))
       ->type_name("NAME");
   command->add_option("--pdf-image", options->densityImage, "Picture of the density of directions: .png or .exr")
+      ->check(CheckPictureName)
       ->type_name("FILE");
   CLI::Option* const sampleImage =
       command->add_option("--sample-image", options->sampleImage, "Picture of the map and of directions drawn from it")
+          ->check(CheckPictureName)
           ->type_name("FILE");
   command->add_option("--samples", options->samples, "Draw N directions; 1000 by default")
       ->check(CheckWhole(1, 1'000'000))

@@ -58,6 +58,7 @@ void AddMergeCommand(CLI::App& program, Action* action) {
           "The picture, .exr or .png, the same as that of one render; or .dapple, to be joined further. May be "
           "given several times")
       ->required()
+      ->check(CheckResultName)
       ->allow_extra_args(false)
       ->type_name("FILE");
   command

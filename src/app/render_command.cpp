@@ -56,6 +56,11 @@ std::string DefaultOutput(const RenderOptions& options, const RenderSettings& se
   return name + ".exr";
 }
 
+/// Whether a picture with its layers is written; a part's sums only keep what these follow from.
+bool WritesLayers(const RenderOptions& options) {
+  return options.outputs.empty() ? !options.isPart : std::ranges::any_of(options.outputs, HoldsLayers);
+}
+
 /// All that is written under a name of its own; of snapshots the names are not known yet.
 std::vector<NamedFile> WrittenBy(const RenderOptions& options) {
   std::vector<NamedFile> files = NamedFiles("--output", options.outputs);
@@ -287,6 +292,10 @@ int RunRender(RenderOptions options) {
   plan.budget.error = options.error;
   // What the scene's file says bounds no one who asks for an error.
   if (options.error && !options.passes) plan.budget.passes.reset();
+  if (options.aovs.variance && plan.budget.passes == 1 && WritesLayers(options))
+    throw Error(
+        FileLocation(options.scene),
+        fmt::format("--aov variance needs two passes at least, and {} make one: see --passes", plan.budgetReason));
   if (!scene.Facts().EmitsLight() && scene.Facts().blackLights > 0) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
   }
@@ -393,6 +402,21 @@ void AddFilesGroup(CLI::App* command, RenderOptions* options) {
       ->group(group);
 }
 
+/// Throws `CLI::ValidationError` for options that are right one by one and not together.
+void RequireUsable(const RenderOptions& options) {
+  if (options.error && options.isPart)
+    throw CLI::ValidationError("--error", "it is of the whole picture, not of a range of passes");
+  if (options.snapshots && HasNoPicture(options))
+    throw CLI::ValidationError("--snapshots", "they are pictures: give an --output that is one, .exr or .png");
+  const bool keepsSums = std::ranges::any_of(options.outputs, IsStateName);
+  if (!options.aovs.IsEmpty() && !options.outputs.empty() && !keepsSums && !WritesLayers(options))
+    throw CLI::ValidationError("--aov", "no output holds layers: give one that is .exr");
+  if (options.aovs.variance && options.passes && options.passes->Count() == 1 && WritesLayers(options))
+    throw CLI::ValidationError("--aov", "the variance needs two passes at least");
+  RequireDirect(options, {options.integrator});
+  RequireNoClash(WrittenBy(options), {{"the scene", options.scene}});
+}
+
 }  // namespace
 
 void AddRenderCommand(CLI::App& program, Action* action) {
@@ -403,6 +427,7 @@ void AddRenderCommand(CLI::App& program, Action* action) {
                    "The picture: .exr (linear, all digits) or .png (sRGB); or .dapple, the exact sums for `dapple "
                    "merge`. May be given several times. By default the name that the scene gives, as .exr in the "
                    "current folder")
+      ->check(CheckResultName)
       ->allow_extra_args(false)
       ->type_name("FILE");
   options->AddTo(command);
@@ -416,11 +441,7 @@ void AddRenderCommand(CLI::App& program, Action* action) {
       ->type_name("LIMIT");
   command->add_flag("--quiet", options->isQuiet, "No progress and no summary; warnings and errors only");
   command->callback([options, action] {
-    if (options->error && options->isPart)
-      throw CLI::ValidationError("--error", "it is of the whole picture, not of a range of passes");
-    if (options->snapshots && HasNoPicture(*options))
-      throw CLI::ValidationError("--snapshots", "they are pictures: give an --output that is one, .exr or .png");
-    RequireNoClash(WrittenBy(*options), {{"the scene", options->scene}});
+    RequireUsable(*options);
     *action = [options] { return RunRender(*options); };
   });
 }

@@ -1,17 +1,41 @@
 #include "src/app/render_outputs.h"
 
+#include <algorithm>
+
 #include "src/app/format.h"
 #include "src/render/statistics.h"
 
 namespace dapple {
+
+bool HoldsLayers(const std::string& path) { return LowerCaseExtension(path) == ".exr"; }
+
+std::string CheckPictureName(const std::string& path) {
+  if (HoldsLayers(path) || LowerCaseExtension(path) == ".png") return "";
+  return fmt::format("expected a file name that ends in .exr or .png, not '{}'", path);
+}
+
+std::string CheckResultName(const std::string& path) {
+  if (IsStateName(path) || CheckPictureName(path).empty()) return "";
+  return fmt::format("expected a file name that ends in .exr, .png or .dapple, not '{}'", path);
+}
 
 void CheckRenderOutput(const std::string& path) {
   if (IsStateName(path)) return CheckFolder(path);
   CheckOutput(path);
 }
 
+namespace {
+
+void WarnOfVariance(const std::vector<std::string>& paths, const AovSet& aovs, const Film& film) {
+  if (!aovs.variance || film.PassCount() > 1 || std::ranges::none_of(paths, HoldsLayers)) return;
+  Tell("warning: the layer of variance is 0 all over: one pass does not tell it, two do");
+}
+
+}  // namespace
+
 void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
                         const Film& film) {
+  WarnOfVariance(paths, origin.aovs, film);
   std::optional<Image> picture;
   for (const std::string& path : paths) {
     if (IsStateName(path)) {

@@ -8,6 +8,14 @@
 
 namespace dapple {
 
+/// Checks of an option's text: what is wrong with its ending as that of a picture, .exr or .png; of a result, which may
+/// be .dapple too.
+std::string CheckPictureName(const std::string& path);
+std::string CheckResultName(const std::string& path);
+
+/// True for names of files that hold a picture's layers beside it: .exr.
+bool HoldsLayers(const std::string& path);
+
 /// Throws `Error` where no result can be written to `path`, as `CheckOutput` does; takes ".dapple" too.
 void CheckRenderOutput(const std::string& path);
 

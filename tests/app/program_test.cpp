@@ -144,6 +144,15 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
         "converge tiny.pbrt --integrators path --time 1 -o out --clamp 1",
         "tiny.pbrt --snapshots 2 --passes 4 -o a.dapple",
         "tiny.pbrt --snapshots 2 --passes 0:4",
+        "tiny.pbrt --aov albedo -o a.png",
+        "tiny.pbrt --aov variance --passes 1",
+        "tiny.pbrt --aov variance --passes 3:4 -o a.exr",
+        "tiny.pbrt -o x",
+        "tiny.pbrt -o x.jpg",
+        "tiny.pbrt --integrator hybrid --direct light",
+        "info tiny.pbrt --integrator hybrid --direct bsdf",
+        "converge tiny.pbrt --integrators path,hybrid --time 1 -o out --direct light",
+        "converge tiny.pbrt tiny.pbrt --integrators path --time 1 -o out --reference a.exr",
         "tiny.pbrt --memory 0",
         "tiny.pbrt --memory much",
         "merge a.dapple",
@@ -174,6 +183,7 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
         "info",
         "emit tiny.pbrt",
         "emit tiny.pbrt --rays 0 -o a.csv",
+        "emit tiny.pbrt -o a.txt",
         "emit tiny.pbrt --light -1 -o a.csv",
         "emit tiny.pbrt --light x -o a.csv",
         "envmap",
@@ -189,6 +199,9 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
         "compare",
         "compare a.exr",
         "compare a.exr b.exr --of colour",
+        "compare a.exr b.exr -d c.jpg",
+        "compare a.exr b.exr -d c.png -d d.png",
+        "envmap a.exr --pdf-image a.jpg",
         "envmap a.exr --samples 10",
         "envmap a.exr --samples 0 --sample-image a.png"}) {
     const ProgramResult result = Run(arguments);
@@ -242,9 +255,12 @@ TEST_F(Program, AnOutputThatCannotBeWrittenIsToldBeforeAnythingIsRead) {
   const ProgramResult folder = Run("nowhere.pbrt -o no/such/folder/a.exr");
   EXPECT_EQ(folder.exitCode, 1);
   EXPECT_TRUE(BeginsWith(folder.err, "no/such/folder/a.exr: error: the folder 'no/such/folder' does not exist"));
-  const ProgramResult extension = Run("nowhere.pbrt -o a.jpg");
-  EXPECT_EQ(extension.exitCode, 1);
-  EXPECT_TRUE(BeginsWith(extension.err, "a.jpg: error: expected a file name that ends in .exr or .png"));
+  for (const std::string command : {"nowhere.pbrt", "merge nowhere.dapple"}) {
+    const ProgramResult extension = Run(command + " -o a.jpg");
+    EXPECT_EQ(extension.exitCode, 2);
+    EXPECT_TRUE(BeginsWith(extension.err,
+                           "error: --output: expected a file name that ends in .exr, .png or .dapple, not 'a.jpg'\n"));
+  }
 }
 
 TEST_F(Program, RendersToTheNameTheSceneGivesInTheCurrentFolder) {
@@ -373,6 +389,26 @@ TEST_F(Program, WarnsOfOptionsThatTheIntegratorHasNoUseFor) {
   EXPECT_TRUE(Contains(Run("converge tiny.pbrt --integrators path" + study).err, "warning: --photons is for "));
 }
 
+// A denoiser would read a variance of 0 as converged.
+TEST_F(Program, TheVarianceOfOnePassIsRefusedOrWarnedOf) {
+  WriteScene("tiny.pbrt");
+  const std::string warning = "warning: the layer of variance is 0 all over: one pass does not tell it, two do\n";
+  const std::string render = "tiny.pbrt --quiet --integrator path --aov variance ";
+  EXPECT_EQ(Run(render + "--time 0.000001 -o a.exr").err, warning);
+  EXPECT_EQ(Run(render + "--passes 2 -o a.exr").err, "");
+  EXPECT_EQ(Run(render + "--passes 0:1 -o a.dapple").err, "") << "a part is no picture yet";
+  EXPECT_EQ(Run("merge a.dapple -o a.exr").err, warning);
+  EXPECT_EQ(Run("merge a.dapple -o a.png").err, "") << "no layer, no warning";
+  Write("one.pbrt",
+        "Sampler \"random\" \"integer pixelsamples\" 1\nWorldBegin\nLightSource \"infinite\"\nMaterial \"diffuse\"\n");
+  const ProgramResult one = Run("one.pbrt --quiet --integrator path --aov variance -o b.exr");
+  EXPECT_EQ(one.exitCode, 1);
+  EXPECT_EQ(one.err,
+            "one.pbrt: error: --aov variance needs two passes at least, and the scene's samples a pixel make one: see "
+            "--passes\n");
+  EXPECT_FALSE(Exists("b.exr"));
+}
+
 TEST_F(Program, TimesBeyondAllClocksAreShownAsTheyAre) {
   WriteScene("tiny.pbrt");
   const ProgramResult result =
@@ -477,7 +513,6 @@ TEST_F(Program, EmitSaysWhatItCannotDo) {
   };
   EXPECT_EQ(error("--light 1 -o a.csv"),
             "tiny.pbrt: error: light 1 is not there: expected one of 0 to 0, as `dapple info` lists them\n");
-  EXPECT_EQ(error("-o a.txt"), "a.txt: error: expected a file name that ends in .csv, .json or .ply\n");
   EXPECT_TRUE(BeginsWith(error("-o no/a.csv"), "no/a.csv: error: the folder 'no' does not exist"));
   Write("dark.pbrt", "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
   EXPECT_TRUE(Contains(Run("emit dark.pbrt -o a.csv").err,
