@@ -400,7 +400,7 @@ TEST_F(Program, TheVarianceOfOnePassIsRefusedOrWarnedOf) {
   EXPECT_EQ(Run("merge a.dapple -o a.exr").err, warning);
   EXPECT_EQ(Run("merge a.dapple -o a.png").err, "") << "no layer, no warning";
   Write("one.pbrt",
-        "Sampler \"random\" \"integer pixelsamples\" 1\nWorldBegin\nLightSource \"infinite\"\nMaterial \"diffuse\"\n");
+        "Sampler \"independent\" \"integer pixelsamples\" 1\nWorldBegin\nLightSource \"infinite\"\nMaterial \"diffuse\"\n");
   const ProgramResult one = Run("one.pbrt --quiet --integrator path --aov variance -o b.exr");
   EXPECT_EQ(one.exitCode, 1);
   EXPECT_EQ(one.err,
