@@ -34,6 +34,7 @@ int RunMerge(const MergeOptions& options) {
   const bool isFinal = !std::ranges::all_of(options.outputs, IsStateName);
   if (isFinal || options.passes) RequireAllPasses(whole.film, options.passes);
   WriteRenderOutputs(options.outputs, whole.origin, RecordOf(whole), whole.film);
+  WarnOfVariance(options.outputs, whole.origin.aovs, whole.film);
   for (const std::string& output : options.outputs) fmt::print("{}\n", output);
   WarnOfNonFinite(whole.film);
   fmt::print("passes    {} of {}\n", whole.film.Passes().ToString(),

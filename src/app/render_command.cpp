@@ -258,6 +258,7 @@ int Finish(const RenderOptions& options, const RenderOrigin& origin, const Rende
   const std::optional<ErrorEstimate> error = EstimateError(film, origin.exposure);
   const RenderRecord record = MakeRecord(options, origin, checkpoint.SecondsBefore() + result.seconds, film, error);
   WriteRenderOutputs(options.outputs, origin, record, film);
+  WarnOfVariance(options.outputs, origin.aovs, film);
   if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
   if (!options.statistics.empty())
     WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film, scene));
@@ -283,6 +284,7 @@ int RunRender(RenderOptions options) {
     options.outputs.push_back(DefaultOutput(options, scene.Settings()));
     CheckRenderOutput(options.outputs[0]);
   }
+  if (options.checkpointSeconds || options.resumes) CheckFolder(Checkpoint::PathFor(options.outputs[0]));
   if (const auto clash = FindClash(WrittenBy(options), NamedFiles("what the scene is read from", loaded.files));
       !clash.empty())
     throw Error(FileLocation(options.scene), clash);

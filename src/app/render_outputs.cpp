@@ -24,18 +24,8 @@ void CheckRenderOutput(const std::string& path) {
   CheckOutput(path);
 }
 
-namespace {
-
-void WarnOfVariance(const std::vector<std::string>& paths, const AovSet& aovs, const Film& film) {
-  if (!aovs.variance || film.PassCount() > 1 || std::ranges::none_of(paths, HoldsLayers)) return;
-  Tell("warning: the layer of variance is 0 all over: one pass does not tell it, two do");
-}
-
-}  // namespace
-
 void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
                         const Film& film) {
-  WarnOfVariance(paths, origin.aovs, film);
   std::optional<Image> picture;
   for (const std::string& path : paths) {
     if (IsStateName(path)) {
@@ -52,6 +42,11 @@ void WarnOfNonFinite(const Film& film) {
   Tell(fmt::format("warning: {} left out: infinite, not a number, or too large: {}",
                    FormatNumberOf(film.NonFiniteCount(), "contribution was", "contributions were"),
                    DescribeNonFinite(film)));
+}
+
+void WarnOfVariance(const std::vector<std::string>& paths, const AovSet& aovs, const Film& film) {
+  if (!aovs.variance || film.PassCount() > 1 || std::ranges::none_of(paths, HoldsLayers)) return;
+  Tell("warning: the layer of variance is 0 all over: one pass does not tell it, two do");
 }
 
 }  // namespace dapple

@@ -23,6 +23,9 @@ void CheckRenderOutput(const std::string& path);
 void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
                         const Film& film);
 
+/// A variance that nobody knows must not be taken for none.
+void WarnOfVariance(const std::vector<std::string>& paths, const AovSet& aovs, const Film& film);
+
 /// A picture of fewer samples than were paid for must not go unnoticed, however quiet the render.
 void WarnOfNonFinite(const Film& film);
 

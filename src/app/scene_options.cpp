@@ -295,8 +295,11 @@ std::function<std::string(const std::string&)> CheckWhole(int least, int most) {
     const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
     const auto [end, status] = std::from_chars(begin, text.data() + text.size(), number);
     const bool isWhole = status == std::errc() && end == text.data() + text.size();
-    if (isWhole && number >= least && number <= most) return "";
-    return fmt::format("expected a whole number from {} to {}, in digits alone, not '{}'", least, most, text);
+    // What is read after this check takes a leading 0 for the mark of an octal number.
+    const bool isDecimal = text == "0" || text.find_first_not_of("+-") == text.find_first_not_of("+-0");
+    if (isWhole && isDecimal && number >= least && number <= most) return "";
+    return fmt::format("expected a whole number from {} to {}, in digits alone and without a leading 0, not '{}'",
+                       least, most, text);
   };
 }
 

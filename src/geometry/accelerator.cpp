@@ -296,7 +296,8 @@ void Accelerator::State::BuildTop() {
   scene = BuildScene(topShapes);
   for (size_t i = 0; i < instances.size(); ++i) {
     const Transform& transform = instances[i].groupToRender;
-    if (transform.IsSingular()) throw Error(fmt::format("instance {}: its transform is singular", i));
+    if (transform.IsSingular())
+      throw Error(instances[i].location, "the instance's transform is singular, expected one that can be inverted");
     GeometryHandle geometry(rtcNewGeometry(device.Handle(), RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(geometry.get(), groupScenes[instances[i].group].get());
     float columns[12];

@@ -75,6 +75,23 @@ fs::path TemporaryName(const fs::path& target) {
   }
 }
 
+OutputFile MakeTemporary(const fs::path& target, const std::string& shownPath) {
+  return OutputFile(TemporaryName(target), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, /*removeOnFailure=*/true,
+                    shownPath);
+}
+
+/// A device, a pipe: what can be written to, and not replaced.
+bool IsDevice(const fs::file_status& status) { return fs::exists(status) && !fs::is_regular_file(status); }
+
+/// Where links lead.
+fs::path TargetOf(const std::string& path, const fs::file_status& status) {
+  if (!fs::exists(status)) return path;
+  std::error_code failure;
+  const fs::path target = fs::canonical(path, failure);
+  if (failure) Fail(path, "cannot write the file", failure.value());
+  return target;
+}
+
 // The process that a temporary file for `target` belongs to, by its name; 0 where it is none.
 pid_t OwnerOf(const fs::path& temporary, const fs::path& target) {
   const std::string name = temporary.filename().string(), beginning = fmt::format(".{}.", target.filename().string());
@@ -101,19 +118,25 @@ void WriteFileAtomically(const std::string& path, std::initializer_list<std::str
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (fs::is_directory(status)) Fail(path, "cannot write the file", EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
+  if (IsDevice(status)) {
     OutputFile file(path, O_WRONLY | O_CLOEXEC, /*removeOnFailure=*/false, path);
     for (const std::string_view piece : pieces) file.Write(piece);
     return file.Close();
   }
-  const fs::path target = fs::exists(status) ? fs::canonical(path, failure) : fs::path(path);
-  if (failure && fs::exists(status)) Fail(path, "cannot write the file", failure.value());
-  OutputFile file(TemporaryName(target), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, /*removeOnFailure=*/true, path);
+  const fs::path target = TargetOf(path, status);
+  OutputFile file = MakeTemporary(target, path);
   for (const std::string_view piece : pieces) file.Write(piece);
   file.Flush();
   file.Close();
   file.RenameTo(target);
   FlushFolder(target);
+}
+
+void CheckWritable(const std::string& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (fs::is_directory(status)) Fail(path, "cannot write the file", EISDIR);
+  if (!IsDevice(status)) MakeTemporary(TargetOf(path, status), path);
 }
 
 void RemoveStaleTemporaries(const std::string& path) {

@@ -14,6 +14,9 @@ void WriteFileAtomically(const std::string& path, std::string_view bytes);
 /// The same, with the pieces one after another as content.
 void WriteFileAtomically(const std::string& path, std::initializer_list<std::string_view> pieces);
 
+/// Makes and removes the temporary file of `WriteFileAtomically`; throws the `Error` that this would.
+void CheckWritable(const std::string& path);
+
 /// Removes the temporary files for `path` that processes of this machine left behind which were killed while they
 /// wrote.
 void RemoveStaleTemporaries(const std::string& path);

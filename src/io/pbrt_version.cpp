@@ -59,8 +59,6 @@ constexpr Evidence kEvidence[] = {
     {WordKind::Sampler, "pmj02bn", 4, kName},
     {WordKind::Integrator, "directlighting", 3, kName},
     {WordKind::Integrator, "whitted", 3, kName},
-    {WordKind::Integrator, "ao", 3, kName},
-    {WordKind::Integrator, "ambientocclusion", 4, kName},
     {WordKind::Integrator, "simplepath", 4, kName},
     {WordKind::Integrator, "simplevolpath", 4, kName},
     {WordKind::Integrator, "lightpath", 4, kName},

@@ -58,10 +58,9 @@ void WarnOfClampedShare(const ParameterList& params, std::string_view name, doub
   if (first == values.end()) return;
   const char* const times = scale == 1 ? "" : " times \"scale\"";
   if (parameter->type == ParameterType::Spectrum)
-    diagnostics.Warn(parameter->location,
-                     fmt::format("parameter \"{}\"{} has the value {}, expected 0 to 1; the colour "
-                                 "that it makes is clamped to that",
-                                 name, times, *first));
+    diagnostics.Warn(parameter->location, fmt::format("parameter \"{}\"{} has the value {}, expected 0 to 1; where the "
+                                                      "colour that it makes is beyond that, it is clamped",
+                                                      name, times, *first));
   else
     diagnostics.Warn(parameter->location, fmt::format("parameter \"{}\"{} is {}, expected 0 to 1; it is clamped to {}",
                                                       name, times, fmt::join(values, " "), fmt::join(clamped, " ")));

@@ -97,16 +97,19 @@ EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUse
   const int64_t most = std::clamp<int64_t>(int64_t{resolution.x} * resolution.y / 2, 1 << 13, kMostPhotons / 2);
   const int64_t rounds[] = {most / 2, most / 2, most};
   for (uint64_t round = 0; round < std::size(rounds); ++round) {
-    const EmissionSampler emission(scene, guide);
     const int64_t photons = rounds[round];
     const size_t first = pilot.size();
     pilot.resize(first + static_cast<size_t>(photons));
-    ParallelForChunks(photons, 1024, [&](int64_t begin, int64_t end) {
-      for (int64_t i = begin; i < end; ++i) {
-        const Sampler sampler = Sampler::ForLightPath(Hash(seed, kPilot, round), i, 0, photons);
-        pilot[first + static_cast<size_t>(i)] = TracePilotPhoton(scene, emission, sampler, maxDepth, isUseful);
-      }
-    });
+    {
+      // Gone before the next guide is learned: of many lights each takes much memory.
+      const EmissionSampler emission(scene, std::move(guide));
+      ParallelForChunks(photons, 1024, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i) {
+          const Sampler sampler = Sampler::ForLightPath(Hash(seed, kPilot, round), i, 0, photons);
+          pilot[first + static_cast<size_t>(i)] = TracePilotPhoton(scene, emission, sampler, maxDepth, isUseful);
+        }
+      });
+    }
     guide = EmissionGuide(power, pilot);
   }
   return guide;

@@ -86,10 +86,10 @@ void RequireMemory(int64_t limit, int64_t inUse, const MemoryNeeds& needs) {
   std::string text =
       fmt::format("the render takes about {}, more than {}: the scene {}, the film {}, writing files {}",
                   Megabytes(sum), Megabytes(limit), Megabytes(inUse), Megabytes(needs.film), Megabytes(needs.files));
+  if (needs.pilots > 0) text += fmt::format(", pilots {}", Megabytes(needs.pilots));
   if (needs.photons > 0) {
     const int64_t left = limit - (sum - needs.photons);
-    text += fmt::format(", pilots {}, photons of {} light paths a pass {}", Megabytes(needs.pilots), needs.lightPaths,
-                        Megabytes(needs.photons));
+    text += fmt::format(", photons of {} light paths a pass {}", needs.lightPaths, Megabytes(needs.photons));
     // What is in use differs a little from run to run.
     constexpr double kMargin = 0.95;
     const double share = kMargin * static_cast<double>(left) / static_cast<double>(needs.photons);

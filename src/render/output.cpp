@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "src/base/error.h"
+#include "src/image/atomic_file.h"
 
 namespace dapple {
 
@@ -24,22 +22,6 @@ Format FormatOf(const std::string& path) {
   if (extension == ".png") return Format::kPng;
   throw Error(FileLocation(path),
               fmt::format("expected a file name that ends in .exr or .png, not in '{}'", extension));
-}
-
-/// Rights do not tell all (root has them in folders that take no file, a name may be too long): makes and removes a
-/// file as the temporary one of `WriteFileAtomically`, which devices and pipes go without.
-void CheckTemporary(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code failure;
-  const fs::file_status status = fs::status(path, failure);
-  if (fs::exists(status) && !fs::is_regular_file(status)) return;
-  const fs::path target = fs::exists(status) ? fs::canonical(path, failure) : fs::path(path);
-  const fs::path temporary = target.parent_path() / fmt::format(".{}.{}.0.tmp", target.filename().string(), getpid());
-  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0)
-    throw Error(FileLocation(path), fmt::format("no file can be written there: {}", std::strerror(errno)));
-  close(descriptor);
-  unlink(temporary.c_str());
 }
 
 }  // namespace
@@ -79,7 +61,8 @@ void CheckFolder(const std::string& path) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw Error(FileLocation(path), fmt::format("the folder '{}' is not writable", folder.string()));
   }
-  CheckTemporary(path);
+  // Rights do not tell all: root has them in folders that take no file, and a name may be too long.
+  CheckWritable(path);
 }
 
 void WriteOutput(const std::string& path, const Image& image, const ImageMetadata& metadata) {

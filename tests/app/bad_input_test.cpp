@@ -135,7 +135,6 @@ TEST_F(BadInput, ResolutionsOfNothingAndOfTooMuch) {
       << "the larger side";
 }
 
-// A light of which nobody can say how much it sends is not taken for a black one.
 TEST_F(BadInput, InstancesTooFlatToBeTraced) {
   const std::string far = "Shape \"sphere\" Translate 1e17 0 0 Shape \"sphere\"\n";
   const std::string object = "ObjectBegin \"a\" Shape \"sphere\" ObjectEnd\n";
@@ -143,6 +142,7 @@ TEST_F(BadInput, InstancesTooFlatToBeTraced) {
   EXPECT_TRUE(BeginsWith(error, "bad.pbrt:6:3: error: the instance is too flat in a scene that reaches ")) << error;
 }
 
+// A light of which nobody can say how much it sends is not taken for a black one.
 TEST_F(BadInput, LightsBeyondAllNumbers) {
   const std::string dark =
       "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\nShape \"sphere\"\n";

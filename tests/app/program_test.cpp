@@ -221,14 +221,14 @@ TEST_F(Program, SaysWhichNumbersItTakes) {
   };
   EXPECT_TRUE(BeginsWith(error("--photons 1e6"),
                          "error: --photons: expected a whole number from 1 to 2147483647, in "
-                         "digits alone, not '1e6'\n"));
+                         "digits alone and without a leading 0, not '1e6'\n"));
   EXPECT_TRUE(BeginsWith(error("--passes 99999999999"),
                          "error: --passes: expected a whole number N from 1 to 2147483647, or a range A:B with "
                          "0 <= A < B <= 2147483647, not '99999999999'\n"));
-  for (const std::string seed : {"18446744073709551615", "1.5", "x"})
+  for (const std::string seed : {"18446744073709551615", "1.5", "x", "010", "-08"})
     EXPECT_TRUE(BeginsWith(error("--seed " + seed),
                            "error: --seed: expected a whole number from -2147483648 to "
-                           "2147483647, in digits alone, not '" +
+                           "2147483647, in digits alone and without a leading 0, not '" +
                                seed + "'\n"));
   EXPECT_TRUE(Contains(error("--threads 1025"), "expected a whole number from 0 to 1024"));
   WriteScene("tiny.pbrt");
@@ -400,7 +400,8 @@ TEST_F(Program, TheVarianceOfOnePassIsRefusedOrWarnedOf) {
   EXPECT_EQ(Run("merge a.dapple -o a.exr").err, warning);
   EXPECT_EQ(Run("merge a.dapple -o a.png").err, "") << "no layer, no warning";
   Write("one.pbrt",
-        "Sampler \"independent\" \"integer pixelsamples\" 1\nWorldBegin\nLightSource \"infinite\"\nMaterial \"diffuse\"\n");
+        "Sampler \"independent\" \"integer pixelsamples\" 1\nWorldBegin\nLightSource \"infinite\"\nMaterial "
+        "\"diffuse\"\n");
   const ProgramResult one = Run("one.pbrt --quiet --integrator path --aov variance -o b.exr");
   EXPECT_EQ(one.exitCode, 1);
   EXPECT_EQ(one.err,

@@ -102,9 +102,12 @@ TEST_F(Resume, TheSummaryCountsThePassesOfAllParts) {
 TEST_F(Resume, AFolderInPlaceOfTheCheckpointIsToldAsOne) {
   WriteScene("tiny.pbrt");
   std::filesystem::create_directory(Path("a.exr.checkpoint"));
-  const ProgramResult result = Run("tiny.pbrt --quiet --integrator path --passes 2 -o a.exr --resume");
-  EXPECT_EQ(result.exitCode, 1);
-  EXPECT_EQ(result.err, "a.exr.checkpoint: error: expected the state of a render; this is a folder\n");
+  for (const char* option : {"--resume", "--checkpoint 60"}) {
+    const ProgramResult result = Run(std::string("tiny.pbrt --quiet --integrator path --passes 2 -o a.exr ") + option);
+    EXPECT_EQ(result.exitCode, 1) << option;
+    EXPECT_EQ(result.err, "a.exr.checkpoint: error: expected the name of a file; this is a folder\n") << option;
+  }
+  EXPECT_FALSE(Exists("a.exr"));
 }
 
 TEST_F(Resume, RefusesTheCheckpointOfAnotherRenderAndSaysWhatDiffers) {

@@ -360,8 +360,8 @@ TEST(BuildMaterials, ClampedSharesAreTold) {
             "0\n");
   EXPECT_EQ(
       warnings(R"("diffuse" "spectrum reflectance" [300 1.5 900 1.5])", 4),
-      "a.pbrt:5:20: warning: parameter \"reflectance\" has the value 1.5, expected 0 to 1; the colour that it makes "
-      "is clamped to that\n");
+      "a.pbrt:5:20: warning: parameter \"reflectance\" has the value 1.5, expected 0 to 1; where the colour that it "
+      "makes is beyond that, it is clamped\n");
   const std::pair<const char*, int> clamped[] = {
       {R"("matte" "rgb Kd" [2 1 1])", 3},       {R"("mirror" "rgb Kr" [2 1 1])", 3},
       {R"("glass" "rgb Kt" [1 1 -1])", 3},      {R"("plastic" "rgb Ks" [2 0 0] "rgb Kd" [0 0 0])", 3},

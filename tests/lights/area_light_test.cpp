@@ -43,6 +43,30 @@ TEST(AreaLight, SpheresFromNearToFarGiveTheirIrradiance) {
   }
 }
 
+// Whoever knows which triangle a ray leaves from may say so: the same comes out as from a search.
+TEST(AreaLight, APrimitiveThatIsToldIsTheOneThatIsFound) {
+  const TriangleMesh mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-3, 1, 0}, {0, 4, 1}, {5, 5, 5}, {6, 5, 5}, {5, 5, 6}}, {},
+                          {}, {0, 1, 2, 2, 3, 4, 5, 6, 7});
+  const AreaLight light(&mesh, Color(2), false);
+  RandomNumbers random(1);
+  const auto holds = [&](int primitive, const Vec3& p) {
+    const Vec3 nearest = mesh.SampleArea(primitive, mesh.InvertArea(primitive, p)).p;
+    return Length(nearest - p) < 1e-4f;
+  };
+  for (int i = 0; i < 1000; ++i) {
+    const std::optional<LeSample> emitted = light.Sample_Le(random.Le());
+    ASSERT_TRUE(emitted);
+    const LightPoint told(emitted->n, emitted->primitive), sought(emitted->n);
+    ASSERT_TRUE(holds(emitted->primitive, emitted->ray.o));
+    EXPECT_EQ(light.Pdf_Le(emitted->ray, told).position, light.Pdf_Le(emitted->ray, sought).position);
+    EXPECT_EQ(light.Invert_Le(emitted->ray, told).part, light.Invert_Le(emitted->ray, sought).part);
+    EXPECT_EQ(light.Invert_Le(emitted->ray, told).position, light.Invert_Le(emitted->ray, sought).position);
+    const std::optional<LiSample> seen =
+        light.Sample_Li(LightContext(Vec3(1, 1, 9), Vec3(0, 0, -1), false), random.Li());
+    EXPECT_TRUE(!seen || holds(seen->primitive, seen->p));
+  }
+}
+
 TEST(AreaLight, TheInsideOfASphereIsLitFromEverywhere) {
   const Sphere sphere(Transform(), true, 1);
   const AreaLight light(&sphere, Color(2), false);

@@ -52,7 +52,7 @@ std::string MessageOf(F action) {
 TEST(Output, AFileThatCannotBeMadeIsToldByTheCheck) {
   // Longer than any that a folder holds.
   const std::string path = TempPath(std::string(220, 'a') + ".exr");
-  EXPECT_EQ(MessageOf([&] { CheckOutput(path); }), path + ": error: no file can be written there: File name too long");
+  EXPECT_EQ(MessageOf([&] { CheckOutput(path); }), path + ": error: cannot write the file: File name too long");
   // Root has the rights to write there, and still nothing can be made.
   EXPECT_NE(MessageOf([] { CheckOutput("/proc/x.exr"); }), "no error");
   const std::string fine = TempPath("fine.exr");

@@ -275,6 +275,31 @@ TEST(SphericalCamera, EqualAreaFilmGoesOnBeyondItsEdges) {
   EXPECT_LT(Length(at(30, 100.01f) - at(70, 99.99f)), 1e-2);
 }
 
+TEST(SphericalCamera, RepeatsOfAFilmPositionLookTheSameWay) {
+  constexpr float kSide = 100;
+  for (const SphericalProjection mapping : {SphericalProjection::Equirectangular, SphericalProjection::EqualArea}) {
+    const SphericalCamera camera(AlongZ(), Vec2i(100, 100), mapping);
+    const auto along = [&](const Vec2& film) { return camera.GenerateRay(film, {0.5, 0.5}, 0).ray.d; };
+    for (const float x : {0.4f, 1.3f, 30.f, 99.1f})
+      for (const float y : {0.7f, 1.9f, 60.f, 99.5f}) {
+        std::vector<Vec2> places = {Vec2(x, y)};
+        std::array<Vec2, Camera::kMostRepeats> repeats;
+        const int count = camera.FilmRepeats(places[0], &repeats);
+        ASSERT_GT(count, 0);
+        for (int i = 0; i < count; ++i) {
+          const Vec2& repeat = repeats[static_cast<size_t>(i)];
+          EXPECT_TRUE(repeat.x < 0 || repeat.x > kSide || repeat.y < 0 || repeat.y > kSide)
+              << repeat.x << " " << repeat.y;
+          for (const Vec2& other : places) EXPECT_NE(repeat, other);
+          places.push_back(repeat);
+          // Farther away no filter reaches.
+          if (std::min(repeat.x, repeat.y) < -50 || std::max(repeat.x, repeat.y) > kSide + 50) continue;
+          EXPECT_LT(Length(along(repeat) - along(places[0])), 1e-5f) << "(" << x << ", " << y << "), repeat " << i;
+        }
+      }
+  }
+}
+
 TEST(OrthographicCamera, ShowsItsScreenWindowInSceneUnits) {
   const OrthographicCamera camera(AlongZ(), {100, 50}, ScreenWindow{-4, 4, -2, 2});
   const Ray corner = camera.GenerateRay({0, 0}, {0.5, 0.5}, 0).ray;
