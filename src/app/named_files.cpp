@@ -1,7 +1,6 @@
 #include "src/app/named_files.h"
 
 #include <filesystem>
-#include <memory>
 #include <set>
 
 #include <CLI/Error.hpp>
@@ -21,14 +20,11 @@ std::filesystem::path Canonical(const std::string& path) {
 
 class FileCollector {
  public:
-  explicit FileCollector(const SceneDescription& scene) : scene_(scene) {}
+  explicit FileCollector(const SceneDescription& scene) : scene_(scene) {
+    for (const std::filesystem::path& text : scene.textFiles) files_.insert(text.string());
+  }
 
   void Add(const Entity& entity) {
-    // Thousands of statements follow one another in a file.
-    if (entity.location.file && entity.location.file != lastText_) {
-      lastText_ = entity.location.file;
-      files_.insert(*lastText_);
-    }
     for (const Parameter& parameter : entity.params.All()) Add(parameter);
   }
   template <typename T>
@@ -50,7 +46,6 @@ class FileCollector {
 
   const SceneDescription& scene_;
   std::set<std::string> files_;
-  std::shared_ptr<const std::string> lastText_;
 };
 
 }  // namespace

@@ -20,8 +20,14 @@ PbrtReader::PbrtReader(int assumedVersion, const std::filesystem::path& folder, 
 
 void PbrtReader::ReadFile(const std::filesystem::path& path) {
   here_ = FileLocation(path.string());
-  sources_.PushFile(path, here_);
+  PushFile(path);
   Run();
+}
+
+PbrtSources::Source& PbrtReader::PushFile(const std::filesystem::path& path) {
+  PbrtSources::Source& source = sources_.PushFile(path, here_);
+  scene_.textFiles.push_back(path);
+  return source;
 }
 
 void PbrtReader::ReadText(std::string_view text, const std::string& name) {
@@ -163,13 +169,13 @@ ParameterList PbrtReader::ReadParameters(AttributeTarget defaults) {
 
 void PbrtReader::Include() {
   const std::string name = ReadName("a file name");
-  sources_.PushFile(scene_.ResolvePath(name, here_), here_);
+  PushFile(scene_.ResolvePath(name, here_));
 }
 
 void PbrtReader::Import() {
   const std::string name = ReadName("a file name");
   const std::size_t blockCount = state_.BlockCount();
-  PbrtSources::Source& source = sources_.PushFile(scene_.ResolvePath(name, here_), here_);
+  PbrtSources::Source& source = PushFile(scene_.ResolvePath(name, here_));
   source.isImport = true;
   source.blockCount = blockCount;
   state_.Begin(BlockKind::Import, here_);

@@ -86,6 +86,8 @@ class PbrtReader {
   void TransformTimes();
 
   // Statements: pbrt_reader.cpp.
+  /// The file whose text comes next.
+  PbrtSources::Source& PushFile(const std::filesystem::path& path);
   void Include();
   void Import();
   void WorldBegin();

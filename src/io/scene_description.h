@@ -66,9 +66,10 @@ struct InstanceDescription {
 };
 
 struct SceneDescription {
-  int version = 4;                     ///< 3 or 4: defaults and some meanings differ.
-  std::string versionReason;           ///< Why, for people: 'film "rgb" (scene.pbrt:2:1)', "asked for".
-  std::filesystem::path file, folder;  ///< Of the main scene; `folder` is where file names are searched.
+  int version = 4;                               ///< 3 or 4: defaults and some meanings differ.
+  std::string versionReason;                     ///< Why, for people: 'film "rgb" (scene.pbrt:2:1)', "asked for".
+  std::filesystem::path file, folder;            ///< Of the main scene; `folder` is where file names are searched.
+  std::vector<std::filesystem::path> textFiles;  ///< That were read: the main one and those it includes.
 
   CameraDescription camera;
   Entity film, sampler, integrator, pixelFilter, accelerator;

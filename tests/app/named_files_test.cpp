@@ -45,7 +45,8 @@ TEST_F(NamedFilesTest, TwoOutputsOfARenderAreNotOneFile) {
 TEST_F(NamedFilesTest, AnOutputIsNotAFileOfTheScene) {
   WriteScene("tiny.pbrt");
   ASSERT_EQ(Run("tiny.pbrt --quiet --integrator path --passes 1 -o map.exr").exitCode, 0);
-  Write("more.pbrt", "Shape \"sphere\" \"float radius\" 0.1\n");
+  Write("moved.pbrt", "Translate 0 0 0\n");
+  Write("more.pbrt", "Include \"moved.pbrt\" Shape \"sphere\" \"float radius\" 0.1\n");
   Write("textured.pbrt", Read("tiny.pbrt") + "Include \"more.pbrt\"\n" +
                              "Texture \"map\" \"spectrum\" \"imagemap\" \"string filename\" \"map.exr\"\n"
                              "Material \"diffuse\" \"texture reflectance\" \"map\"\nShape \"sphere\"\n");
@@ -57,6 +58,7 @@ TEST_F(NamedFilesTest, AnOutputIsNotAFileOfTheScene) {
             "textured.pbrt: error: what the scene is read from and --output are one file: 'map.exr'\n");
   EXPECT_TRUE(BeginsWith(ErrorOf(render + "-o link.exr", 1), "textured.pbrt: error: what the scene is read from"));
   EXPECT_TRUE(BeginsWith(ErrorOf(render + "--stats more.pbrt", 1), "textured.pbrt: error: what the scene is read"));
+  EXPECT_TRUE(BeginsWith(ErrorOf(render + "--stats moved.pbrt", 1), "textured.pbrt: error: what the scene is read"));
   EXPECT_EQ(Run(render + "--quiet -o a.exr").exitCode, 0);
   EXPECT_EQ(Run(render + "--quiet -o a.exr").exitCode, 0) << "its own picture may be replaced";
 }
