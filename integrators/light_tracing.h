@@ -4,6 +4,8 @@
 // asked; a pilot learns which emitted rays come into the picture.
 #pragma once
 
+#include <array>
+
 #include "integrators/integrator.h"
 #include "src/photons/light_path.h"
 

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "src/io/scene_description.h"
-
 namespace dapple {
 
 /// A file, and what it is to the command, as its user calls it: "--stats", "the scene".
@@ -23,9 +21,5 @@ void RequireNoClash(const std::vector<NamedFile>& written, const std::vector<Nam
 
 /// `role` for each of the paths.
 std::vector<NamedFile> NamedFiles(const std::string& role, const std::vector<std::string>& paths);
-
-/// What a scene is read from, each once: the files of its text, and those that are there by a name that a parameter
-/// gives (as `HashSceneContent` takes them; not the picture's name).
-std::vector<std::string> FilesOf(const SceneDescription& scene);
 
 }  // namespace dapple

@@ -371,10 +371,11 @@ LoadedScene LoadUnchecked(const SceneOptions& options, Diagnostics& diagnostics)
                                                  options.direct.value_or(DirectTechnique::Mis));
   build.lightSamples = options.lightSamples;
   // Where no direction is drawn all ways to draw them give the same bits.
-  SceneIdentity identity{HashSceneContent(description),
+  SceneContent content = HashSceneContent(description);
+  SceneIdentity identity{std::move(content.hash),
                          build.drawsTowardLights ? DescribeEnvironmentSampling(description) : "none"};
   return {description.version, description.versionReason, std::move(identity),
-          BuildScene(description, build, diagnostics), FilesOf(description)};
+          BuildScene(description, build, diagnostics), std::move(content.files)};
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ struct LoadedScene {
   std::string versionReason;
   SceneIdentity identity;
   std::unique_ptr<Scene> scene;
-  std::vector<std::string> files;  ///< all that was read for it (`FilesOf`)
+  std::vector<std::string> files;  ///< all that was read for it
 };
 
 /// Reads and builds the scene with the options' resolution, crop and version. Throws `Error`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -16,7 +17,9 @@ constexpr std::string_view kSampling = "sampling";
 
 class SceneHasher {
  public:
-  explicit SceneHasher(const SceneDescription& scene) : scene_(scene) {}
+  explicit SceneHasher(const SceneDescription& scene) : scene_(scene) {
+    for (const std::filesystem::path& text : scene.textFiles) files_.insert(text.string());
+  }
 
   void Add(const Entity& entity) {
     hash_.AddText(entity.type);
@@ -66,7 +69,7 @@ class SceneHasher {
   }
   void AddNumber(int number) { hash_.Add(number); }
 
-  std::string Hex() const { return hash_.Hex(); }
+  SceneContent Content() const { return {hash_.Hex(), {files_.begin(), files_.end()}}; }
 
  private:
   /// All but the one of the name `leftOut`.
@@ -81,6 +84,7 @@ class SceneHasher {
 
   const SceneDescription& scene_;
   ContentHash hash_;
+  std::set<std::string> files_;
 };
 
 void SceneHasher::Add(const Parameter& parameter) {
@@ -107,6 +111,7 @@ void SceneHasher::AddFileOf(const std::string& name, const FileLocation& namedAt
   std::error_code failure;
   const std::filesystem::path path = scene_.ResolvePath(name, namedAt);
   if (name.empty() || !std::filesystem::is_regular_file(path, failure)) return;
+  files_.insert(path.string());
   std::ifstream file(path, std::ios::binary);
   std::string block(size_t{1} << 20, '\0');
   while (file) {
@@ -118,7 +123,7 @@ void SceneHasher::AddFileOf(const std::string& name, const FileLocation& namedAt
 
 }  // namespace
 
-std::string HashSceneContent(const SceneDescription& scene) {
+SceneContent HashSceneContent(const SceneDescription& scene) {
   SceneHasher hasher(scene);
   hasher.Add(scene.camera);
   hasher.Add(scene.camera.cameraFromWorld);
@@ -133,7 +138,7 @@ std::string HashSceneContent(const SceneDescription& scene) {
   hasher.AddAll(scene.objects);
   hasher.AddAll(scene.instances);
   hasher.AddNumber(scene.version);
-  return hasher.Hex();
+  return hasher.Content();
 }
 
 std::string DescribeEnvironmentSampling(const SceneDescription& scene) {

@@ -2,17 +2,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "src/io/scene_description.h"
 
 namespace dapple {
 
-/// 32 hexadecimal digits. They follow from what the statements say and from the content of each file that a parameter
+struct SceneContent {
+  std::string hash;                ///< 32 hexadecimal digits
+  std::vector<std::string> files;  ///< that the scene is read from, each once: its text, and what its parameters name
+};
+
+/// The hash follows from what the statements say and from the content of each file that a parameter
 /// names (meshes, images, spectra), and not from comments, layout, how the text is cut into files, or where it lies.
 /// The sampler's and the integrator's statements are left out: what Dapple takes from them the command line may say
 /// too, so it belongs to the options of the render; and so is how environments are sampled, which the choice of the
 /// algorithm may change. Throws `Error` where a file that is there cannot be read.
-std::string HashSceneContent(const SceneDescription& scene);
+SceneContent HashSceneContent(const SceneDescription& scene);
 
 /// By which technique each infinite light draws directions, in the scene's order: "irradiance,importance"; "none" where
 /// there is none. For a light that is the same from everywhere, where the file says nothing: "uniform light".

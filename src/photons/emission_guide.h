@@ -2,10 +2,11 @@
 // random numbers from which all emission is drawn.
 //
 // Each light has a share of the photons and, unless hundreds of others are of more use, two tables: over the two random
-// numbers of its origins and over those of its directions. A tenth of each table is spread evenly, a tenth
-// of the lights' shares goes by power, and a tenth of a light's photons ignore its tables, so that what the pilot
-// missed is still found: no photon weighs more than 100 times what it would without a guide: 10 times by the choice
-// of its light, 10 by the tables.
+// numbers of its origins and over those of its directions. A tenth of each table is spread evenly, a tenth of the
+// lights' shares goes by power, and a tenth of a light's photons ignore its tables, so that what the pilot missed is
+// still found, and no photon weighs more than 100 times what it would without a guide (10 by the choice of its light,
+// 10 by the tables).
+//
 // The bend happens before the light turns the cube into a ray, so the density of what is drawn is exact whatever was
 // learned. Asked of a ray, which is rounded to float, it may be that of the neighbour where the ray lies on the border
 // of two cells.

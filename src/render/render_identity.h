@@ -21,7 +21,7 @@ struct RenderIdentity {
 
 /// Of which scene a render is.
 struct SceneIdentity {
-  std::string hash;                 ///< `HashSceneContent`
+  std::string hash;                 ///< of `HashSceneContent`
   std::string environmentSampling;  ///< how directions toward infinite lights are drawn
 };
 

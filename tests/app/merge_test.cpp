@@ -84,6 +84,9 @@ TEST_F(Merge, RefusesPartsOfAnotherRenderAndSaysWhatDiffers) {
 }
 
 TEST_F(Merge, RefusesFilesThatAreNoParts) {
+  std::filesystem::create_directory(Path("folder.dapple"));
+  EXPECT_EQ(Run("merge folder.dapple -o a.exr").err,
+            "folder.dapple: error: expected the state of a render; this is a folder\n");
   WriteScene("tiny.pbrt");
   ASSERT_EQ(Run("tiny.pbrt --quiet --integrator path --passes 0:1 -o part.dapple").exitCode, 0);
   const std::string part = Read("part.dapple");

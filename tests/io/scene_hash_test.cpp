@@ -12,7 +12,7 @@ namespace {
 
 std::string HashOf(const std::string& text) {
   Diagnostics diagnostics([](const std::string& line) { ADD_FAILURE() << line; });
-  return HashSceneContent(ParsePbrtString(text, "test.pbrt", testing::TempDir(), {.pbrtVersion = 3}, diagnostics));
+  return HashSceneContent(ParsePbrtString(text, "test.pbrt", testing::TempDir(), {.pbrtVersion = 3}, diagnostics)).hash;
 }
 
 constexpr const char* kScene =
@@ -65,8 +65,8 @@ TEST(SceneHash, SamplingOfEnvironmentsIsToldApart) {
   const std::string sky = "LightSource \"infinite\" \"string mapname\" \"sky.exr\" ";
   const std::string cosine = "\"string sampling\" \"cosine\"\n";
   const std::string gray = "LightSource \"exinfinite\"\n";
-  EXPECT_EQ(HashSceneContent(parse(sky + cosine)), HashSceneContent(parse(sky)));
-  EXPECT_NE(HashSceneContent(parse(sky + "\"integer samples\" 4\n")), HashSceneContent(parse(sky)));
+  EXPECT_EQ(HashSceneContent(parse(sky + cosine)).hash, HashSceneContent(parse(sky)).hash);
+  EXPECT_NE(HashSceneContent(parse(sky + "\"integer samples\" 4\n")).hash, HashSceneContent(parse(sky)).hash);
   EXPECT_EQ(DescribeEnvironmentSampling(parse(sky + cosine + gray + sky)), "cosine,uniform light,importance");
   EXPECT_EQ(DescribeEnvironmentSampling(parse("LightSource \"point\"")), "none");
 }
