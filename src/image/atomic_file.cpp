@@ -66,6 +66,8 @@ class OutputFile {
   bool removeOnFailure_ = false;
 };
 
+fs::path FolderOf(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+
 // A name in the target's folder that no other process and no file there has.
 fs::path TemporaryName(const fs::path& target) {
   for (int i = 0;; ++i) {
@@ -75,7 +77,29 @@ fs::path TemporaryName(const fs::path& target) {
   }
 }
 
+// The process that a temporary file for `target` belongs to, by its name; 0 where it is none.
+pid_t OwnerOf(const fs::path& temporary, const fs::path& target) {
+  const std::string name = temporary.filename().string(), beginning = fmt::format(".{}.", target.filename().string());
+  if (!name.starts_with(beginning) || !name.ends_with(".tmp")) return 0;
+  pid_t owner = 0;
+  std::from_chars(name.data() + beginning.size(), name.data() + name.size(), owner);
+  return owner;
+}
+
+// Removes the temporary files for `target` that processes of this machine left behind which were killed while they
+// wrote.
+void RemoveStaleTemporaries(const fs::path& target) {
+  std::error_code ignored;
+  std::vector<fs::path> stale;
+  for (const auto& entry : fs::directory_iterator(FolderOf(target), ignored)) {
+    const pid_t owner = OwnerOf(entry.path(), target);
+    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) stale.push_back(entry.path());
+  }
+  for (const fs::path& file : stale) fs::remove(file, ignored);
+}
+
 OutputFile MakeTemporary(const fs::path& target, const std::string& shownPath) {
+  RemoveStaleTemporaries(target);
   return OutputFile(TemporaryName(target), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, /*removeOnFailure=*/true,
                     shownPath);
 }
@@ -92,19 +116,9 @@ fs::path TargetOf(const std::string& path, const fs::file_status& status) {
   return target;
 }
 
-// The process that a temporary file for `target` belongs to, by its name; 0 where it is none.
-pid_t OwnerOf(const fs::path& temporary, const fs::path& target) {
-  const std::string name = temporary.filename().string(), beginning = fmt::format(".{}.", target.filename().string());
-  if (!name.starts_with(beginning) || !name.ends_with(".tmp")) return 0;
-  pid_t owner = 0;
-  std::from_chars(name.data() + beginning.size(), name.data() + name.size(), owner);
-  return owner;
-}
-
 // The rename itself is durable once the folder is; some file systems cannot do this, and then nothing is lost.
 void FlushFolder(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int descriptor = ::open(FolderOf(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   ::fsync(descriptor);
   ::close(descriptor);
@@ -137,17 +151,6 @@ void CheckWritable(const std::string& path) {
   const fs::file_status status = fs::status(path, failure);
   if (fs::is_directory(status)) Fail(path, "cannot write the file", EISDIR);
   if (!IsDevice(status)) MakeTemporary(TargetOf(path, status), path);
-}
-
-void RemoveStaleTemporaries(const std::string& path) {
-  const fs::path target(path), folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  std::error_code ignored;
-  std::vector<fs::path> stale;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const pid_t owner = OwnerOf(entry.path(), target);
-    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) stale.push_back(entry.path());
-  }
-  for (const fs::path& file : stale) fs::remove(file, ignored);
 }
 
 }  // namespace dapple

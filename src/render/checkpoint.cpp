@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "src/image/atomic_file.h"
-
 namespace dapple {
 
 namespace {
@@ -24,7 +22,6 @@ Checkpoint::Checkpoint(std::string path, RenderOrigin origin, std::optional<doub
     : path_(std::move(path)), origin_(std::move(origin)), interval_(interval) {}
 
 std::optional<Film> Checkpoint::Load(const RenderBudget& budget) {
-  RemoveStaleTemporaries(path_);
   std::error_code failure;
   if (!std::filesystem::exists(path_, failure)) return std::nullopt;
   RenderState state = ReadState(path_);

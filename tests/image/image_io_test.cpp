@@ -14,10 +14,8 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include "src/base/hash.h"
-#include "src/image/atomic_file.h"
 #include "src/image/image_formats.h"
 #include "tests/image/temporary_folder.h"
 
@@ -306,37 +304,6 @@ TEST(ReadImage, FlippedBytesNeverCrash) {
       }
     }
   }
-}
-
-TEST(AtomicFile, ReplacesAndLeavesNothingBehind) {
-  const TemporaryFolder folder;
-  folder.Write("a", "old and longer");
-  WriteFileAtomically(folder.Path("a"), "new");
-  EXPECT_EQ(folder.Read("a"), "new");
-  EXPECT_EQ(folder.FileCount(), 1u);
-}
-
-TEST(AtomicFile, FollowsLinks) {
-  const TemporaryFolder folder;
-  folder.Write("target", "old");
-  std::filesystem::create_symlink(folder.Path("target"), folder.Path("link"));
-  WriteFileAtomically(folder.Path("link"), "new");
-  EXPECT_TRUE(std::filesystem::is_symlink(folder.Path("link")));
-  EXPECT_EQ(folder.Read("target"), "new");
-}
-
-TEST(AtomicFile, DevicesStayDevices) {
-  WriteFileAtomically("/dev/null", "nothing");
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
-  EXPECT_THROW(WriteFileAtomically("/dev/full", "something"), Error);
-}
-
-TEST(AtomicFile, FailureLeavesTheOldFileAndNoTemporary) {
-  const TemporaryFolder folder;
-  EXPECT_THROW(WriteFileAtomically(folder.Path("absent/a"), "x"), Error);
-  std::filesystem::create_directory(folder.Path("folder"));
-  EXPECT_THROW(WriteFileAtomically(folder.Path("folder"), "x"), Error);
-  EXPECT_EQ(folder.FileCount(), 1u);
 }
 
 }  // namespace
