@@ -1,9 +1,12 @@
 #include "src/app/named_files.h"
 
 #include <filesystem>
+#include <optional>
 
 #include <CLI/Error.hpp>
 #include <fmt/format.h>
+
+#include "src/render/snapshots.h"
 
 namespace dapple {
 
@@ -30,6 +33,18 @@ std::string FindClash(const std::vector<NamedFile>& written, const std::vector<N
                                      : fmt::format("{} and {} are one file: '{}'", other.role, file.role, file.path);
     }
     others.push_back({file.role, path});
+  }
+  return "";
+}
+
+std::string FindSnapshotClash(const std::vector<std::string>& outputs, const std::vector<NamedFile>& others) {
+  for (const NamedFile& other : others) {
+    const std::string path = Canonical(other.path).string();
+    for (const std::string& output : outputs) {
+      const std::optional<int> passes = SnapshotPasses(output, path);
+      if (passes && Canonical(SnapshotName(output, *passes)).string() == path)
+        return fmt::format("{} is what a snapshot of '{}' will be called: '{}'", other.role, output, other.path);
+    }
   }
   return "";
 }

@@ -16,6 +16,9 @@ struct NamedFile {
 /// `read`, by whatever path; empty where there is none.
 std::string FindClash(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read);
 
+/// The same of the snapshots of `outputs`, whatever their passes (src/render/snapshots.h): none may be one of `others`.
+std::string FindSnapshotClash(const std::vector<std::string>& outputs, const std::vector<NamedFile>& others);
+
 /// Throws `CLI::ValidationError`, wrong usage, where there is a clash.
 void RequireNoClash(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read);
 

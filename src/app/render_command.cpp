@@ -61,12 +61,21 @@ bool WritesLayers(const RenderOptions& options) {
   return options.outputs.empty() ? !options.isPart : std::ranges::any_of(options.outputs, HoldsLayers);
 }
 
-/// All that is written under a name of its own; of snapshots the names are not known yet.
+/// All that is written under a name of its own; of snapshots see `FindClashOf`.
 std::vector<NamedFile> WrittenBy(const RenderOptions& options) {
   std::vector<NamedFile> files = NamedFiles("--output", options.outputs);
   if (!options.outputs.empty()) files.push_back({"the checkpoint", Checkpoint::PathFor(options.outputs[0])});
   if (!options.statistics.empty()) files.push_back({"--stats", options.statistics});
   return files;
+}
+
+/// `FindClash` of all that is written, and of the snapshots with that and with what is read.
+std::string FindClashOf(const RenderOptions& options, const std::vector<NamedFile>& read) {
+  std::vector<NamedFile> written = WrittenBy(options);
+  const std::string clash = FindClash(written, read);
+  if (!clash.empty() || !options.snapshots) return clash;
+  written.insert(written.end(), read.begin(), read.end());
+  return FindSnapshotClash(options.outputs, written);
 }
 
 std::string Rate(int64_t count, double seconds) {
@@ -285,8 +294,7 @@ int RunRender(RenderOptions options) {
     CheckRenderOutput(options.outputs[0]);
   }
   if (options.checkpointSeconds || options.resumes) CheckFolder(Checkpoint::PathFor(options.outputs[0]));
-  if (const auto clash = FindClash(WrittenBy(options), NamedFiles("what the scene is read from", loaded.files));
-      !clash.empty())
+  if (const auto clash = FindClashOf(options, NamedFiles("what the scene is read from", loaded.files)); !clash.empty())
     throw Error(FileLocation(options.scene), clash);
   RenderPlan plan = MakePlan(scene, options, diagnostics);
   WarnOfUnused(options, {plan.choice.name}, diagnostics);
@@ -416,7 +424,8 @@ void RequireUsable(const RenderOptions& options) {
   if (options.aovs.variance && options.passes && options.passes->Count() == 1 && WritesLayers(options))
     throw CLI::ValidationError("--aov", "the variance needs two passes at least");
   RequireDirect(options, {options.integrator});
-  RequireNoClash(WrittenBy(options), {{"the scene", options.scene}});
+  if (const auto clash = FindClashOf(options, {{"the scene", options.scene}}); !clash.empty())
+    throw CLI::ValidationError(clash);
 }
 
 }  // namespace

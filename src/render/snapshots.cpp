@@ -1,6 +1,7 @@
 #include "src/render/snapshots.h"
 
 #include <cassert>
+#include <charconv>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -35,6 +36,16 @@ std::string SnapshotName(const std::string& output, int passes) {
   const std::filesystem::path path(output);
   return (path.parent_path() / fmt::format("{}.{:05}{}", path.stem().string(), passes, path.extension().string()))
       .string();
+}
+
+std::optional<int> SnapshotPasses(const std::string& output, const std::string& path) {
+  const auto fileName = [](const std::string& of) { return std::filesystem::path(of).filename().string(); };
+  const std::string name = fileName(path), stem = std::filesystem::path(output).stem().string();
+  if (name.size() <= stem.size()) return std::nullopt;
+  int passes = 0;
+  std::from_chars(name.data() + stem.size() + 1, name.data() + name.size(), passes);
+  if (passes < 1 || name != fileName(SnapshotName(output, passes))) return std::nullopt;
+  return passes;
 }
 
 }  // namespace dapple

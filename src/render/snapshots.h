@@ -2,6 +2,7 @@
 // the film between passes, so it changes nothing of what comes after.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "src/render/driver.h"
@@ -26,5 +27,8 @@ class SnapshotSchedule {
 
 /// "picture.exr" after 16 passes: "picture.00016.exr".
 std::string SnapshotName(const std::string& output, int passes);
+/// The number of passes after which a snapshot of `output` has the file name of `path`, in whatever folder; nothing
+/// where none has.
+std::optional<int> SnapshotPasses(const std::string& output, const std::string& path);
 
 }  // namespace dapple

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "src/image/image_io.h"
+#include "src/render/snapshots.h"
 #include "tests/app/program.h"
 #include "tests/image/test_images.h"
 
@@ -40,6 +41,32 @@ TEST_F(NamedFilesTest, TwoOutputsOfARenderAreNotOneFile) {
       BeginsWith(ErrorOf(render + "-o a.exr --stats a.exr.checkpoint", 2), "error: the checkpoint and --stats"));
   EXPECT_TRUE(BeginsWith(ErrorOf(render + "--stats tiny.exr", 1), "tiny.pbrt: error: --output and --stats are "));
   EXPECT_EQ(Run(render + "-o a.exr -o a.png --stats a.json --quiet").exitCode, 0);
+}
+
+TEST_F(NamedFilesTest, ASnapshotReplacesNothing) {
+  WriteScene("tiny.pbrt");
+  const std::string render = "tiny.pbrt --integrator path --passes 2 --snapshots 1 -o a.exr ";
+  EXPECT_TRUE(BeginsWith(ErrorOf(render + "-o ./a.00001.exr", 2),
+                         "error: --output is what a snapshot of 'a.exr' will be called: './a.00001.exr'\n"));
+  EXPECT_TRUE(BeginsWith(ErrorOf(render + "--stats a.123456.exr", 2), "error: --stats is what a snapshot of 'a.exr'"));
+  ASSERT_EQ(Run(render + "--quiet --stats a.00001.json").exitCode, 0);
+  Write("textured.pbrt", Read("tiny.pbrt") +
+                             "Texture \"map\" \"spectrum\" \"imagemap\" \"string filename\" \"a.00001.exr\"\n"
+                             "Material \"diffuse\" \"texture reflectance\" \"map\"\nShape \"sphere\"\n");
+  EXPECT_TRUE(BeginsWith(ErrorOf("textured.pbrt --snapshots 1 -o a.exr", 1),
+                         "textured.pbrt: error: what the scene is read from is what a snapshot of 'a.exr' will be "));
+  std::filesystem::create_directory(Path("other"));
+  EXPECT_EQ(Run("textured.pbrt --quiet --passes 2 --snapshots 1 -o other/a.exr -o a.png").exitCode, 0);
+  EXPECT_EQ(Run("textured.pbrt --quiet --passes 2 -o a.exr").exitCode, 0) << "no snapshots, no clash";
+}
+
+TEST_F(NamedFilesTest, SnapshotsHaveTheNumberOfPassesInTheirNames) {
+  EXPECT_EQ(SnapshotName("b/a.exr", 7), "b/a.00007.exr");
+  for (const int passes : {1, 99999, 100000, 2147483647})
+    EXPECT_EQ(SnapshotPasses("b/a.exr", SnapshotName("c/a.exr", passes)), passes);
+  for (const char* name : {"a.exr", "a.0007.exr", "a.000007.exr", "a.00000.exr", "a.-0001.exr", "a.00007.png",
+                           "b.00007.exr", "a.00007", "a.99999999999.exr", "a", ""})
+    EXPECT_EQ(SnapshotPasses("b/a.exr", name), std::nullopt) << name;
 }
 
 TEST_F(NamedFilesTest, AnOutputIsNotAFileOfTheScene) {
