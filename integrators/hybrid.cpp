@@ -129,7 +129,7 @@ Color HybridIntegrator::EmittedAlong(const Walk& walk, const SurfaceInteraction*
       others = LightPdf(*scene_, walk.last.at, index, ray.d, hit, options_.direct) / static_cast<double>(walk.last.pdf);
     }
     if (walk.weights.Unmerged().merging > 0) {
-      const LightPoint from = hit ? LightPoint(hit->ng, hit->primitive) : LightPoint();
+      const LightPoint from = hit ? LightPoint{hit->ng, hit->primitive} : LightPoint{};
       const double pdf = plan_->emission.Pdf(index, Ray{hit ? hit->p : ray.o, -ray.d}, from).Product();
       const double cosAtLight = hit ? static_cast<double>(AbsDot(hit->ng, ray.d)) : 1;
       others += EmissionRatio(pdf, cosAtLight, false, 0) * walk.weights.Unmerged().merging;

@@ -17,6 +17,19 @@ namespace dapple {
 namespace {
 
 template <typename T>
+std::unique_ptr<Integrator> Make(const IntegratorOptions& options) {
+  return std::make_unique<T>(options);
+}
+
+constexpr std::pair<std::string_view, std::unique_ptr<Integrator> (*)(const IntegratorOptions&)> kIntegrators[] = {
+    {"path", Make<PathIntegrator>},
+    {"light_tracing", Make<LightTracingIntegrator>},
+    {"photon_mapping", Make<PhotonMappingIntegrator>},
+    {"sppm", Make<SppmIntegrator>},
+    {"hybrid", Make<HybridIntegrator>},
+};
+
+template <typename T>
 std::string ToText(const std::optional<T>& value) {
   return value ? fmt::format("{}", *value) : "automatic";
 }
@@ -68,15 +81,14 @@ std::vector<std::pair<std::string, std::string>> DescribeOptions(const Integrato
 }
 
 std::vector<std::string_view> IntegratorNames() {
-  return {"path", "light_tracing", "photon_mapping", "sppm", "hybrid"};
+  std::vector<std::string_view> names;
+  for (const auto& [name, make] : kIntegrators) names.push_back(name);
+  return names;
 }
 
 std::unique_ptr<Integrator> MakeIntegrator(std::string_view name, const IntegratorOptions& options) {
-  if (name == "path") return std::make_unique<PathIntegrator>(options);
-  if (name == "light_tracing") return std::make_unique<LightTracingIntegrator>(options);
-  if (name == "photon_mapping") return std::make_unique<PhotonMappingIntegrator>(options);
-  if (name == "sppm") return std::make_unique<SppmIntegrator>(options);
-  if (name == "hybrid") return std::make_unique<HybridIntegrator>(options);
+  for (const auto& [known, make] : kIntegrators)
+    if (known == name) return make(options);
   throw Error(fmt::format("unknown integrator \"{}\"; expected auto, {}", name, fmt::join(IntegratorNames(), ", ")));
 }
 

@@ -69,6 +69,12 @@ struct LiSample {
   bool isDistant = false;  ///< comes from infinitely far away: a direction and no place
 };
 
+/// Where a ray leaves its light, beside its origin.
+struct LightPoint {
+  Vec3 n{0, 0, 0};     ///< unit normal; zero where there is no surface
+  int primitive = -1;  ///< of the light's shape; -1: whichever is nearest to the origin, which takes long in big meshes
+};
+
 /// A ray that leaves a light.
 struct LeSample {
   Ray ray;             ///< starts on the light, already moved off its surface
@@ -81,6 +87,8 @@ struct LeSample {
   bool deltaDir = false;
   int primitive = 0;  ///< of the light's shape, where it has one
 
+  /// Where it leaves the light, for `Light::Pdf_Le` and `Invert_Le`.
+  LightPoint From() const { return {n, primitive}; }
   /// The flux that this ray stands for.
   Color Flux() const { return Le * static_cast<float>(cosTheta / (pdfPos * pdfDir)); }
 };
@@ -89,15 +97,6 @@ struct LeSample {
 struct RadianceWithPdf {
   Color L;
   double pdf = 0;
-};
-
-/// Where a ray leaves its light, beside its origin.
-struct LightPoint {
-  Vec3 n{0, 0, 0};     ///< unit normal; zero where there is no surface
-  int primitive = -1;  ///< of the light's shape; -1: whichever is nearest to the origin, which takes long in big meshes
-
-  LightPoint() = default;
-  LightPoint(const Vec3& normal, int ofPrimitive = -1) : n(normal), primitive(ofPrimitive) {}
 };
 
 /// The densities of an emitted ray.

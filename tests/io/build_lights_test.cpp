@@ -317,10 +317,10 @@ TEST(BuildLights, EmissionOfAMapIsByImportanceOrUniform) {
   EXPECT_TRUE(uniform.warnings.empty());
   for (const Vec3& d : {Vec3(0, 0, 1), Vec3(0.6f, 0, -0.8f)}) {
     const Ray ray{Vec3(0), d};
-    EXPECT_NEAR(uniform->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction, 1 / (4 * kPiD), 1e-15);
-    EXPECT_EQ(importance->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction,
-              plain->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction);
-    EXPECT_NE(plain->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction, uniform->Lights()[0]->Pdf_Le(ray, Vec3(0)).direction);
+    EXPECT_NEAR(uniform->Lights()[0]->Pdf_Le(ray, {}).direction, 1 / (4 * kPiD), 1e-15);
+    EXPECT_EQ(importance->Lights()[0]->Pdf_Le(ray, {}).direction,
+              plain->Lights()[0]->Pdf_Le(ray, {}).direction);
+    EXPECT_NE(plain->Lights()[0]->Pdf_Le(ray, {}).direction, uniform->Lights()[0]->Pdf_Le(ray, {}).direction);
   }
   for (const std::string map : {"\"string mapname\" \"sky.exr\"", "\"rgb L\" [1 1 1]"}) {
     const std::string message = MessageOf(

@@ -56,7 +56,7 @@ TEST(AreaLight, APrimitiveThatIsToldIsTheOneThatIsFound) {
   for (int i = 0; i < 1000; ++i) {
     const std::optional<LeSample> emitted = light.Sample_Le(random.Le());
     ASSERT_TRUE(emitted);
-    const LightPoint told(emitted->n, emitted->primitive), sought(emitted->n);
+    const LightPoint told = emitted->From(), sought{emitted->n};
     ASSERT_TRUE(holds(emitted->primitive, emitted->ray.o));
     EXPECT_EQ(light.Pdf_Le(emitted->ray, told).position, light.Pdf_Le(emitted->ray, sought).position);
     EXPECT_EQ(light.Invert_Le(emitted->ray, told).part, light.Invert_Le(emitted->ray, sought).part);

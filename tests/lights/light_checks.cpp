@@ -112,7 +112,7 @@ class RayDomain {
       const SurfaceInteraction at = SurfaceDomain(*tested_.shape).Point(origin, &area);
       const ConeDomain sphere(2, Frame::FromZ(at.ng));
       const Vec3 d = ToFloat(sphere.Point(direction[0], direction[1]));
-      const LePdf pdf = tested_.light.Pdf_Le(Ray{at.p, d}, at.ng);
+      const LePdf pdf = tested_.light.Pdf_Le(Ray{at.p, d}, {at.ng, at.primitive});
       return {pdf.position * area, pdf.direction * sphere.SolidAngle()};
     }
     const Vec3 d = HasDiscreteDirection() ? one_.ray.d : ToFloat(cone_.Point(direction[0], direction[1]));
@@ -124,7 +124,7 @@ class RayDomain {
       o = ToFloat(disk.center + (disk.s * p.x + disk.t * p.y) * disk.radius);
       originMeasure = disk.Area();
     }
-    const LePdf pdf = tested_.light.Pdf_Le(Ray{o, d}, Vec3(0));
+    const LePdf pdf = tested_.light.Pdf_Le(Ray{o, d}, {});
     return {pdf.position * originMeasure, pdf.direction * (HasDiscreteDirection() ? 1 : cone_.SolidAngle())};
   }
 
@@ -408,7 +408,7 @@ Verdict CheckLookup(const TestedLight& tested, double spread, bool isTextured) {
   for (int i = 0; i < 2000; ++i) {
     const std::optional<LeSample> sample = tested.light.Sample_Le(random.Le());
     if (!sample) continue;
-    const LePdf pdf = tested.light.Pdf_Le(sample->ray, sample->n);
+    const LePdf pdf = tested.light.Pdf_Le(sample->ray, sample->From());
     // Where the density varies over a surface it is taken at the ray's origin, which lies off it.
     const double tolerance = tested.shape ? 1e-4 : 0;
     if (pdf.direction != sample->pdfDir || !(std::abs(pdf.position / sample->pdfPos - 1) <= tolerance)) {

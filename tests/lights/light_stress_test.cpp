@@ -123,7 +123,7 @@ TEST(LightStress, LightsAtInfinityInScenesOfAllSizes) {
         const auto sample = light->Sample_Le(random.Le());
         if (!sample) continue;
         ASSERT_NEAR(sample->pdfPos * area, 1, kRelativeError) << radius;
-        ASSERT_EQ(light->Pdf_Le(sample->ray, sample->n).position, sample->pdfPos) << radius;
+        ASSERT_EQ(light->Pdf_Le(sample->ray, sample->From()).position, sample->pdfPos) << radius;
       }
     }
     EXPECT_NEAR(static_cast<double>(distant.Power().g) / (3 * area), 1, kRelativeError) << radius;

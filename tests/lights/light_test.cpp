@@ -20,7 +20,7 @@ TEST(EveryLight, DensitiesOfARayAreThoseItWasDrawnWith) {
       if (!sample) continue;
       ASSERT_GT(sample->pdfPos, 0) << c.name;
       ASSERT_GT(sample->pdfDir, 0) << c.name;
-      const LePdf pdf = c.light->Pdf_Le(sample->ray, sample->n);
+      const LePdf pdf = c.light->Pdf_Le(sample->ray, sample->From());
       ASSERT_EQ(pdf.direction, sample->pdfDir) << c.name;
       // Where the density varies over the surface it is taken at the ray's origin, which lies off it.
       ASSERT_NEAR(pdf.position / sample->pdfPos, 1, isEllipsoidal ? 1e-4 : 0) << c.name;
@@ -38,7 +38,7 @@ TEST(EveryLight, RandomNumbersOfARayAreFoundAgain) {
       const LeRandom u = random.Le();
       const std::optional<LeSample> sample = c.light->Sample_Le(u);
       if (!sample) continue;
-      const LeRandom back = c.light->Invert_Le(sample->ray, sample->n);
+      const LeRandom back = c.light->Invert_Le(sample->ray, sample->From());
       if (!sample->deltaPos) {
         ASSERT_NEAR(back.position.x, u.position.x, tolerance) << c.name;
         ASSERT_NEAR(back.position.y, u.position.y, tolerance) << c.name;
@@ -89,9 +89,9 @@ TEST(EveryLight, RaysFromInfinityHaveAllOfTheSceneAhead) {
       ASSERT_LT(Length(Cross(kTestExtent.center - sample->ray.o, sample->ray.d)), kTestExtent.radius * 1.00001f);
       // Any point of the line has the density of the ray; lines that miss the scene have none.
       const Ray later{sample->ray(2.5f), sample->ray.d};
-      ASSERT_EQ(c.light->Pdf_Le(later, sample->n).position, sample->pdfPos) << c.name;
+      ASSERT_EQ(c.light->Pdf_Le(later, sample->From()).position, sample->pdfPos) << c.name;
       const Vec3 aside = Frame::FromZ(sample->ray.d).s * (2.1f * kTestExtent.radius);
-      ASSERT_EQ(c.light->Pdf_Le(Ray{sample->ray.o + aside, sample->ray.d}, sample->n).position, 0) << c.name;
+      ASSERT_EQ(c.light->Pdf_Le(Ray{sample->ray.o + aside, sample->ray.d}, sample->From()).position, 0) << c.name;
       ASSERT_FALSE(c.light->IsInfinite() && c.light->Le(Ray{Vec3(0), -sample->ray.d}) != sample->Le) << c.name;
     }
   }

@@ -49,7 +49,7 @@ class BentEnvironment : public LightDecorator {
       sample->ray = Ray{DiskAcross(wi).Sample(u.position), -wi};
     }
     sample->Le = light_->Le(Ray{Vec3(0), -sample->ray.d});
-    const LePdf pdf = Pdf_Le(sample->ray, sample->n);
+    const LePdf pdf = Pdf_Le(sample->ray, sample->From());
     sample->pdfPos = pdf.position, sample->pdfDir = pdf.direction;
     return sample;
   }
@@ -115,7 +115,7 @@ class FaultyEmission : public LightDecorator {
     std::optional<LeSample> sample = light_->Sample_Le(SamplerIsFaulty() ? ChangedNumbers(u) : u);
     if (!sample) return std::nullopt;
     if (SamplerIsFaulty()) Change(u, &*sample);
-    const LePdf pdf = Pdf_Le(sample->ray, sample->n);
+    const LePdf pdf = Pdf_Le(sample->ray, sample->From());
     // A draw where the light itself has no density claims that of a proper one.
     if (pdf.position > 0) sample->pdfPos = pdf.position;
     if (pdf.direction > 0) sample->pdfDir = pdf.direction;
@@ -150,7 +150,7 @@ class FlippedNormal final : public FaultyEmission {
     sample->ray.o = sample->ray.o + sample->ray.d * 1e-4f;
   }
   LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf&) const override {
-    return light_->Pdf_Le(ray, -from.n);
+    return light_->Pdf_Le(ray, {-from.n, from.primitive});
   }
 };
 
@@ -199,7 +199,7 @@ class WrongDiskArea final : public FaultyEmission {
   }
   LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf&) const override {
     const Vec3 center = CenterOf(ray);
-    const LePdf pdf = light_->Pdf_Le(Ray{center + (ray.o - center) * (1 / kShare), ray.d}, from.n);
+    const LePdf pdf = light_->Pdf_Le(Ray{center + (ray.o - center) * (1 / kShare), ray.d}, from);
     return {pdf.position / static_cast<double>(kShare * kShare), pdf.direction};
   }
 };
@@ -249,7 +249,7 @@ class ReversedRays final : public FaultyEmission {
     sample->ray = Ray{DiskAcross(w).Sample(u.position), -w};
   }
   LePdf FaultyDensity(const Ray& ray, const LightPoint& from, const LePdf&) const override {
-    return light_->Pdf_Le(Ray{ray.o, -ray.d}, from.n);
+    return light_->Pdf_Le(Ray{ray.o, -ray.d}, from);
   }
 };
 

@@ -82,7 +82,7 @@ void ExpectClosedForm(const EnvironmentLight& light) {
     ASSERT_LE(std::abs(std::acos(wi.z) - kTheta), h * 1.001);
     ASSERT_LE(std::abs(std::atan2(wi.y, wi.x) - kPhi), width * 1.001);
     ASSERT_NEAR(sample->pdfPos * kPiD, 1, kRelativeError);
-    ASSERT_EQ(light.Pdf_Le(sample->ray, sample->n).direction, sample->pdfDir);
+    ASSERT_EQ(light.Pdf_Le(sample->ray, sample->From()).direction, sample->pdfDir);
   }
   EXPECT_GT(drawn, 990);
 }
