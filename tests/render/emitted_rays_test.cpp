@@ -78,7 +78,7 @@ TEST(EmittedRays, AreInTheWorldWithTheirDensities) {
     EXPECT_NEAR(static_cast<double>(ray.flux.g) * density * 2000 / (static_cast<double>(ray.radiance.g) * cosTheta), 1,
                 1e-5);
     const EmissionPdf pdf =
-        emission.Pdf(ray.light, Ray{ToFloat(toRender.Point(ray.origin)), ray.direction}, ray.normal);
+        emission.Pdf(ray.light, Ray{ToFloat(toRender.Point(ray.origin)), ray.direction}, {ray.normal});
     EXPECT_NEAR(pdf.light / ray.pdfLight, 1, 1e-12);
     EXPECT_NEAR(pdf.position / ray.pdfPosition, 1, 1e-4);
     EXPECT_NEAR(pdf.direction / ray.pdfDirection, 1, 1e-4);
