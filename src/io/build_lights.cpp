@@ -191,8 +191,8 @@ std::unique_ptr<Light> BuildInfinite(Values& values, const LightDescription& lig
     return BuildEnvironmentMap(values, light, *fileName, options);
   }
   const Color L = InRange(light, GetEmission(values, light, "L") * TargetFactor(context, light, "illuminance", kPiD));
-  // The same from everywhere: both ways to emit are one.
-  if (!light.params.Has("sampling")) {
+  // The same from everywhere: both ways to emit are one. How directions are drawn counts only where any are.
+  if (!context.options.drawsTowardLights || !light.params.Has("sampling")) {
     auto uniform = std::make_unique<UniformEnvironmentLight>(L);
     uniform->SetSampleCount(options.samples);
     return uniform;

@@ -83,6 +83,24 @@ TEST_F(Merge, RefusesPartsOfAnotherRenderAndSaysWhatDiffers) {
   EXPECT_EQ(difference("same.pbrt --integrator path"), "");
 }
 
+// No direction is drawn toward lights: how it would be is no difference, and none in the picture.
+TEST_F(Merge, SamplingOfAnEnvironmentThatNothingAsksIsNoDifference) {
+  WriteScene("point.pbrt");
+  const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]";
+  Write("plain.pbrt", Read("point.pbrt") + sky + "\n");
+  Write("named.pbrt", Read("point.pbrt") + sky + " \"string sampling\" \"importance\"\n");
+  for (const std::string how :
+       {"--integrator light_tracing --no-guide --photons 2000", "--integrator path --direct bsdf"}) {
+    const std::string options = how + " --quiet --passes ";
+    ASSERT_EQ(Run("plain.pbrt " + options + "2 -o whole.exr").exitCode, 0);
+    ASSERT_EQ(Run("plain.pbrt " + options + "0:1 -o first.dapple").exitCode, 0);
+    ASSERT_EQ(Run("named.pbrt " + options + "1:2 -o second.dapple").exitCode, 0);
+    const ProgramResult merged = Run("merge first.dapple second.dapple -o joined.exr");
+    EXPECT_EQ(merged.exitCode, 0) << merged.err;
+    EXPECT_TRUE(Read("joined.exr") == Read("whole.exr")) << how;
+  }
+}
+
 TEST_F(Merge, RefusesFilesThatAreNoParts) {
   std::filesystem::create_directory(Path("folder.dapple"));
   EXPECT_EQ(Run("merge folder.dapple -o a.exr").err,

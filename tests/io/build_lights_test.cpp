@@ -216,6 +216,35 @@ TEST(BuildLights, SamplingOfInfiniteLights) {
   EXPECT_NEAR(pdfStraightUp("structured"), 1 / (4 * kPiD), 1e-6);
 }
 
+// The identity of a render does not hold the sampling then: the light has to be the same, to the bit.
+TEST(BuildLights, SamplingIsOfNoAccountWhereNoDirectionIsDrawn) {
+  const TestFolder folder;
+  Image map = Image::Rgb(8, 4);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x) map.SetColor(x, y, Color(static_cast<float>(x * y + 1)));
+  WriteExr((folder.Path() / "map.exr").string(), map);
+  BuildOptions options;
+  options.drawsTowardLights = false;
+  for (const std::string kind : {"\"rgb L\" [1 2 3] ", "\"string mapname\" \"map.exr\" "}) {
+    const std::string light = "LightSource \"infinite\" " + kind;
+    const Built plain = Lit(light, 3, folder.Path(), options);
+    for (const std::string sampling : {"cosine", "importance", "irradiance"}) {
+      const Built named = Lit(light + "\"string sampling\" \"" + sampling + "\"", 3, folder.Path(), options);
+      EXPECT_EQ(named->Lights()[0]->Power(), plain->Lights()[0]->Power());
+      for (const double u : {0.1, 0.4, 0.9}) {
+        const LeRandom random{u, {u, 1 - u}, {u / 2, u}};
+        const auto one = plain->Lights()[0]->Sample_Le(random), other = named->Lights()[0]->Sample_Le(random);
+        ASSERT_TRUE(one && other) << light << sampling;
+        EXPECT_EQ(other->ray.o, one->ray.o) << light << sampling;
+        EXPECT_EQ(other->ray.d, one->ray.d) << light << sampling;
+        EXPECT_EQ(other->Le, one->Le) << light << sampling;
+        EXPECT_EQ(other->pdfPos, one->pdfPos) << light << sampling;
+        EXPECT_EQ(other->pdfDir, one->pdfDir) << light << sampling;
+      }
+    }
+  }
+}
+
 TEST(BuildLights, SamplesOfInfiniteLights) {
   EXPECT_EQ(Lit(R"(LightSource "infinite" "integer samples" 16)", 3)->Lights()[0]->SampleCount(), 16);
   EXPECT_EQ(Lit(R"(LightSource "infinite" "integer nsamples" 4)", 3)->Lights()[0]->SampleCount(), 4);
@@ -318,8 +347,7 @@ TEST(BuildLights, EmissionOfAMapIsByImportanceOrUniform) {
   for (const Vec3& d : {Vec3(0, 0, 1), Vec3(0.6f, 0, -0.8f)}) {
     const Ray ray{Vec3(0), d};
     EXPECT_NEAR(uniform->Lights()[0]->Pdf_Le(ray, {}).direction, 1 / (4 * kPiD), 1e-15);
-    EXPECT_EQ(importance->Lights()[0]->Pdf_Le(ray, {}).direction,
-              plain->Lights()[0]->Pdf_Le(ray, {}).direction);
+    EXPECT_EQ(importance->Lights()[0]->Pdf_Le(ray, {}).direction, plain->Lights()[0]->Pdf_Le(ray, {}).direction);
     EXPECT_NE(plain->Lights()[0]->Pdf_Le(ray, {}).direction, uniform->Lights()[0]->Pdf_Le(ray, {}).direction);
   }
   for (const std::string map : {"\"string mapname\" \"sky.exr\"", "\"rgb L\" [1 1 1]"}) {
