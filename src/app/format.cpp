@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <new>
 
 namespace dapple {
 
@@ -56,6 +57,14 @@ std::string FormatError(const ErrorEstimate& error, bool isBiasKnown) {
 }
 
 void Tell(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
+
+void Print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+std::string ErrorLine(const std::exception& error, const FileLocation& place) {
+  if (dynamic_cast<const Error*>(&error)) return error.what();
+  const bool isMemory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  return Error(place, isMemory ? "the memory does not suffice" : error.what()).what();
+}
 
 std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "src/base/error.h"
 #include "src/render/error_estimate.h"
 
 namespace dapple {
@@ -29,5 +31,11 @@ std::string FormatNumberOf(int64_t count, std::string_view one, std::string_view
 /// Writes a line to the error stream. Where nobody reads it any more (a broken pipe) nothing happens: a render is not
 /// lost for want of a listener.
 void Tell(const std::string& line);
+
+/// Writes to the standard output. That it failed is told when the program ends (main.cpp), and costs nothing before.
+void Print(const std::string& text);
+
+/// What went wrong as the one line that is told of it; `place`: where, if the error does not say so itself.
+std::string ErrorLine(const std::exception& error, const FileLocation& place = {});
 
 }  // namespace dapple

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,6 @@
 
 #include "src/app/command.h"
 #include "src/app/format.h"
-#include "src/base/error.h"
 #include "src/render/version.h"
 
 namespace dapple {
@@ -21,7 +19,7 @@ namespace {
 
 constexpr const char* kFooter =
     "\n`dapple SCENE` is short for `dapple render SCENE`.\n"
-    "Exit codes: 0 success, 1 failure (one line on the error stream says what), 2 wrong usage,\n"
+    "Exit codes: 0 success, 1 failure (a line on the error stream says what), 2 wrong usage,\n"
     "128 + N where signal N ended a render early; its picture and its checkpoint are written.";
 
 /// The arguments, without the program's name, with "render" put in front where no subcommand is named.
@@ -82,12 +80,8 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   try {
     return dapple::CheckPrinted(dapple::Run(argc, argv));
-  } catch (const dapple::Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "error: the memory does not suffice\n");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
+    dapple::Tell(dapple::ErrorLine(error));
   }
   return dapple::kExitFailure;
 }

@@ -33,15 +33,16 @@ int RunMerge(const MergeOptions& options) {
   // A state may be joined further, a picture is final.
   const bool isFinal = !std::ranges::all_of(options.outputs, IsStateName);
   if (isFinal || options.passes) RequireAllPasses(whole.film, options.passes);
-  WriteRenderOutputs(options.outputs, whole.origin, RecordOf(whole), whole.film);
-  WarnOfVariance(options.outputs, whole.origin.aovs, whole.film);
-  for (const std::string& output : options.outputs) fmt::print("{}\n", output);
+  const WrittenOutputs outputs = WriteRenderOutputs(options.outputs, whole.origin, RecordOf(whole), whole.film);
+  for (const std::string& line : outputs.errors) Tell(line);
+  WarnOfVariance(outputs.paths, whole.origin.aovs, whole.film);
   WarnOfNonFinite(whole.film);
-  fmt::print("passes    {} of {}\n", whole.film.Passes().ToString(),
-             FormatNumberOf(static_cast<int64_t>(options.parts.size()), "file", "files"));
+  for (const std::string& path : outputs.paths) Print(path + "\n");
+  Print(fmt::format("passes    {} of {}\n", whole.film.Passes().ToString(),
+                    FormatNumberOf(static_cast<int64_t>(options.parts.size()), "file", "files")));
   if (const auto error = EstimateError(whole.film, whole.origin.exposure))
-    fmt::print("accuracy  {}\n", FormatError(*error, whole.film.TracksBlur()));
-  return kExitSuccess;
+    Print(fmt::format("accuracy  {}\n", FormatError(*error, whole.film.TracksBlur())));
+  return outputs.errors.empty() ? kExitSuccess : kExitFailure;
 }
 
 }  // namespace

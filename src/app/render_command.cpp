@@ -10,7 +10,6 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Option.hpp>
-#include <fmt/ranges.h>
 
 #include "src/app/command.h"
 #include "src/app/format.h"
@@ -18,6 +17,7 @@
 #include "src/app/named_files.h"
 #include "src/app/progress_display.h"
 #include "src/app/render_outputs.h"
+#include "src/app/render_summary.h"
 #include "src/app/scene_options.h"
 #include "src/app/signals.h"
 #include "src/base/parallel.h"
@@ -78,52 +78,10 @@ std::string FindClashOf(const RenderOptions& options, const std::vector<NamedFil
   return FindSnapshotClash(options.outputs, written);
 }
 
-std::string Rate(int64_t count, double seconds) {
-  return FormatCount(static_cast<double>(count) / std::max(seconds, 1e-9)) + "/s";
-}
-
 void PrintStart(const RenderOptions& options, const Scene& scene, const RenderPlan& plan) {
   const Vec2i& resolution = scene.Settings().resolution;
   Tell(fmt::format("{}: {} x {}, {} ({}), {}", options.scene, resolution.x, resolution.y, plan.choice.name,
                    plan.choice.reason, FormatNumberOf(ThreadCount(), "thread", "threads")));
-}
-
-void PrintNeeds(const RenderNeeds& needs, const PassStats& stats) {
-  const auto bytes = [](int64_t n) { return FormatBytes(static_cast<double>(n)); };
-  const SceneResources& scene = needs.scene;
-  const TableUse tables = AllTables(needs);
-  fmt::print("held      geometry {}; {} ({}); {} ({})", bytes(scene.geometryBytes),
-             FormatNumberOf(tables.count, "table", "tables"), bytes(tables.bytes),
-             FormatNumberOf(scene.images.opened, "image file", "image files"), bytes(scene.images.bytes));
-  if (stats.photonMaps > 0) fmt::print("; a photon map of up to {}", bytes(stats.photonMapBytes));
-  fmt::print("\n");
-}
-
-void PrintSummary(const RenderResult& result, const RenderNeeds& needs, const Film& film,
-                  const std::optional<ErrorEstimate>& error) {
-  const PassStats& stats = result.stats;
-  const auto count = [](int64_t n) { return FormatCount(static_cast<double>(n)); };
-  fmt::print("{} in {} (of which preparation {})", FormatNumberOf(result.passes, "pass", "passes"),
-             FormatDuration(result.seconds), FormatDuration(result.prepareSeconds));
-  if (film.PassCount() > result.passes)
-    fmt::print("; with those before, {}", FormatNumberOf(film.PassCount(), "pass", "passes"));
-  fmt::print("\n");
-  fmt::print("rays      {} ({}): {} camera, {} shadow, {} photon, {} probe\n", count(stats.Rays()),
-             Rate(stats.Rays(), result.seconds), count(stats.cameraRays), count(stats.shadowRays),
-             count(stats.photonRays), count(stats.probeRays));
-  if (stats.photonsEmitted > 0 || needs.preparation.pilotPaths > 0) {
-    fmt::print("photons   {} emitted ({}), {} stored; {} more in pilots\n", count(stats.photonsEmitted),
-               Rate(stats.photonsEmitted, result.seconds), count(stats.photonsStored),
-               count(needs.preparation.pilotPaths));
-  }
-  if (stats.gathers > 0) {
-    fmt::print("gathers   {}, {:.3g} photons each\n", count(stats.gathers),
-               static_cast<double>(stats.photonsGathered) / static_cast<double>(stats.gathers));
-  }
-  if (stats.splats > 0) fmt::print("splats    {}\n", count(stats.splats));
-  if (error) fmt::print("accuracy  {}\n", FormatError(*error, film.TracksBlur()));
-  PrintNeeds(needs, stats);
-  fmt::print("memory    {} at its peak\n", FormatBytes(static_cast<double>(PeakMemoryBytes())));
 }
 
 RenderOrigin MakeOrigin(const RenderOptions& options, const LoadedScene& loaded, const RenderPlan& plan,
@@ -204,11 +162,8 @@ class BetweenPasses {
     record.passes = static_cast<int>(film.PassCount());
     std::vector<std::string> paths;
     for (const std::string& output : outputs_) paths.push_back(SnapshotName(output, record.passes));
-    try {
-      WriteRenderOutputs(paths, origin_, record, film);
-    } catch (const Error& error) {
-      Tell(fmt::format("warning: a snapshot was not written: {}", error.what()));
-    }
+    for (const std::string& error : WriteRenderOutputs(paths, origin_, record, film).errors)
+      Tell(fmt::format("warning: a snapshot was not written: {}", error));
   }
 
   const RenderOrigin& origin_;
@@ -227,13 +182,14 @@ RenderResult RenderWithProgress(const RenderOptions& options, const Scene& scene
   return Render(scene, SeedFrom(plan.seed), *plan.integrator, film, plan.budget, hooks, plan.seconds);
 }
 
-/// False, with a word, where it fails: then the picture can still be written.
-bool SaveCheckpoint(Checkpoint& checkpoint, const Film& film, double seconds) {
+/// Does what writes `path`. False, with a word, where it fails: what else is to be written still can be.
+template <typename F>
+bool IsDone(const std::string& path, F write) {
   try {
-    checkpoint.Save(film, seconds);
+    write();
     return true;
-  } catch (const Error& error) {
-    Tell(error.what());
+  } catch (const std::exception& error) {
+    Tell(ErrorLine(error, FileLocation(path)));
     return false;
   }
 }
@@ -248,38 +204,78 @@ RenderRecord MakeRecord(const RenderOptions& options, const RenderOrigin& origin
 }
 
 /// A picture that is not as good as was asked for must not go unnoticed.
-void WarnOfError(const RenderOptions& options, const std::optional<ErrorEstimate>& error) {
+void WarnOfError(const RenderOptions& options, const Film& film, const std::optional<ErrorEstimate>& error) {
   if (!options.error || (error && error->Total() < *options.error)) return;
-  Tell(error ? fmt::format("warning: the error is about {:.3g}, not below {:g}", error->Total(), *options.error)
-             : "warning: the error of a single pass cannot be estimated");
+  if (error) {
+    Tell(fmt::format("warning: the error is about {:.3g}, not below {:g}", error->Total(), *options.error));
+  } else {
+    Tell(film.PassCount() < 2 ? "warning: the error of a single pass cannot be estimated"
+                              : "warning: the memory does not suffice to estimate the error");
+  }
 }
 
-/// Writes all that was asked for, and says how to go on where a signal ended the render; returns the exit code.
+/// What stands on the disk in the end.
+struct Kept {
+  RenderRecord record;
+  std::optional<ErrorEstimate> error;  ///< where it was asked for
+  WrittenOutputs outputs;
+  bool needsState = false;  ///< the state is to be saved: as was asked for, or for want of an output
+  bool hasState = false;
+
+  bool IsWhole() const { return outputs.errors.empty() && hasState == needsState; }
+};
+
+/// What is worth most comes first: the sums, from which all else can be made, then the results. What fails is told and
+/// costs nothing else.
+Kept WriteResults(const RenderOptions& options, const RenderOrigin& origin, const RenderResult& result,
+                  const Film& film, Checkpoint& checkpoint) {
+  Kept kept;
+  const auto save = [&] {
+    kept.needsState = true;
+    kept.hasState = IsDone(checkpoint.Path(), [&] { checkpoint.Save(film, result.seconds); });
+  };
+  if (options.checkpointSeconds || options.resumes || result.stopped) save();
+  if (options.error) kept.error = EstimateError(film, origin.exposure);
+  kept.record = MakeRecord(options, origin, checkpoint.SecondsBefore() + result.seconds, film, kept.error);
+  kept.outputs = WriteRenderOutputs(options.outputs, origin, kept.record, film);
+  for (const std::string& line : kept.outputs.errors) Tell(line);
+  if (!kept.outputs.errors.empty() && !kept.needsState) save();
+  return kept;
+}
+
+/// Where a signal ended the render or a result is missing.
+void TellHowToGoOn(const Kept& kept, const RenderResult& result, const Film& film, const Checkpoint& checkpoint) {
+  if (!kept.hasState || (!result.stopped && kept.outputs.errors.empty())) return;
+  Tell(fmt::format("{} {}; to go on, give the same command with --resume (it reads {})",
+                   result.stopped ? "stopped after" : "kept:", FormatNumberOf(film.PassCount(), "pass", "passes"),
+                   checkpoint.Path()));
+}
+
+/// Writes all that was asked for and tells what was done; returns the exit code.
 int Finish(const RenderOptions& options, const RenderOrigin& origin, const RenderResult& result,
-           const RenderNeeds& needs, const Scene& scene, const Film& film, int signal, Checkpoint& checkpoint) {
+           const RenderNeeds& needs, const Film& film, int signal, Checkpoint& checkpoint) {
   if (film.PassCount() == 0) {
     Tell("stopped before the first pass; no picture is written");
     return 128 + signal;
   }
-  // The checkpoint first: what is in it can be rendered no faster a second time.
-  const bool savesState = options.checkpointSeconds || options.resumes || result.stopped;
-  const bool isSaved = !savesState || SaveCheckpoint(checkpoint, film, result.seconds);
-  const std::optional<ErrorEstimate> error = EstimateError(film, origin.exposure);
-  const RenderRecord record = MakeRecord(options, origin, checkpoint.SecondsBefore() + result.seconds, film, error);
-  WriteRenderOutputs(options.outputs, origin, record, film);
-  WarnOfVariance(options.outputs, origin.aovs, film);
-  if (!options.isQuiet) fmt::print("{}\n", fmt::join(options.outputs, "\n"));
-  if (!options.statistics.empty())
-    WriteFileAtomically(options.statistics, StatisticsToJson(record, result, needs, film, scene));
+  const Kept kept = WriteResults(options, origin, result, film, checkpoint);
+  WarnOfVariance(kept.outputs.paths, origin.aovs, film);
   WarnOfNonFinite(film);
-  WarnOfError(options, error);
-  if (!options.isQuiet) PrintSummary(result, needs, film, error);
-  if (result.stopped && isSaved) {
-    Tell(fmt::format("stopped after {}; to go on, give the same command with --resume (it reads {})",
-                     FormatNumberOf(film.PassCount(), "pass", "passes"), checkpoint.Path()));
+  WarnOfError(options, film, kept.error);
+  TellHowToGoOn(kept, result, film, checkpoint);
+  std::optional<ErrorEstimate> error = kept.error;
+  if (!error && !(options.isQuiet && options.statistics.empty())) error = EstimateError(film, origin.exposure);
+  const bool hasStatistics =
+      options.statistics.empty() || IsDone(options.statistics, [&] {
+        WriteFileAtomically(options.statistics, StatisticsToJson(kept.record, result, needs, film, error));
+      });
+  if (!options.isQuiet) {
+    for (const std::string& path : kept.outputs.paths) Print(path + "\n");
+    PrintSummary(result, needs, film, error);
   }
-  if (!isSaved) return kExitFailure;
-  return result.stopped ? 128 + signal : kExitSuccess;
+  if (!kept.IsWhole()) return kExitFailure;
+  if (result.stopped) return 128 + signal;
+  return hasStatistics ? kExitSuccess : kExitFailure;
 }
 
 int RunRender(RenderOptions options) {
@@ -319,7 +315,7 @@ int RunRender(RenderOptions options) {
   const RenderResult result = RenderWithProgress(options, scene, plan, origin, signals, checkpoint, film);
   RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
   needs.preparation.pilotPaths += plan.choice.pilotPaths;
-  return Finish(options, origin, result, needs, scene, film, signals.Signal(), checkpoint);
+  return Finish(options, origin, result, needs, film, signals.Signal(), checkpoint);
 }
 
 /// A snapshot is a picture, of outputs that are one.

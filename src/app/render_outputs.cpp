@@ -24,17 +24,24 @@ void CheckRenderOutput(const std::string& path) {
   CheckOutput(path);
 }
 
-void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
-                        const Film& film) {
+WrittenOutputs WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin,
+                                  const RenderRecord& record, const Film& film) {
+  WrittenOutputs written;
   std::optional<Image> picture;
-  for (const std::string& path : paths) {
-    if (IsStateName(path)) {
-      WriteState(path, origin, film);
-      continue;
-    }
+  const auto write = [&](const std::string& path) {
+    if (IsStateName(path)) return WriteState(path, origin, film);
     if (!picture) picture = ToPicture(film, origin.exposure, origin.aovs);
     WriteOutput(path, *picture, ToMetadata(record));
+  };
+  for (const std::string& path : paths) {
+    try {
+      write(path);
+      written.paths.push_back(path);
+    } catch (const std::exception& error) {
+      written.errors.push_back(ErrorLine(error, FileLocation(path)));
+    }
   }
+  return written;
 }
 
 void WarnOfNonFinite(const Film& film) {

@@ -19,9 +19,15 @@ bool HoldsLayers(const std::string& path);
 /// Throws `Error` where no result can be written to `path`, as `CheckOutput` does; takes ".dapple" too.
 void CheckRenderOutput(const std::string& path);
 
-/// Writes the picture of the film, or its exact sums, by the extension of each path. Throws `Error`.
-void WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin, const RenderRecord& record,
-                        const Film& film);
+/// What came of writing results.
+struct WrittenOutputs {
+  std::vector<std::string> paths;   ///< those that are written
+  std::vector<std::string> errors;  ///< of each of the others, a line
+};
+
+/// Writes the picture of the film, or its exact sums, by the extension of each path. One that fails costs no other.
+WrittenOutputs WriteRenderOutputs(const std::vector<std::string>& paths, const RenderOrigin& origin,
+                                  const RenderRecord& record, const Film& film);
 
 /// A variance that nobody knows must not be taken for none.
 void WarnOfVariance(const std::vector<std::string>& paths, const AovSet& aovs, const Film& film);

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <new>
 #include <vector>
 
 #include "src/base/numerics.h"
@@ -84,9 +85,13 @@ double ErrorEstimate::Total() const { return std::sqrt(Sqr(noise) + Sqr(bias)); 
 
 std::optional<ErrorEstimate> EstimateError(const Film& film, float exposure) {
   if (film.PassCount(0) == 0 || film.PassCount(1) == 0) return std::nullopt;
-  const Squares squares = Estimator(film, exposure).Estimate();
-  // Where there is next to no bias the products of two independent values scatter around zero.
-  return ErrorEstimate{std::sqrt(squares.noise), std::sqrt(std::max(0., squares.bias))};
+  try {
+    const Squares squares = Estimator(film, exposure).Estimate();
+    // Where there is next to no bias the products of two independent values scatter around zero.
+    return ErrorEstimate{std::sqrt(squares.noise), std::sqrt(std::max(0., squares.bias))};
+  } catch (const std::bad_alloc&) {
+    return std::nullopt;
+  }
 }
 
 bool IsErrorDue(int passes) {

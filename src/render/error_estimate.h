@@ -20,8 +20,8 @@ struct ErrorEstimate {
   double Total() const;
 };
 
-/// Estimates the error of `film`'s image times the exposure; nothing before both its halves have a pass. Depends on the
-/// film alone, on no number of threads.
+/// Estimates the error of `film`'s image times the exposure; nothing before both its halves have a pass, or where the
+/// memory does not suffice: no render ends for want of it. Depends on the film alone, on no number of threads.
 ///
 /// Noise: half-images are independent, so ((h0 - h1)^2 n0 n1 / (n0 + n1)^2) has the variance of a pixel as its mean,
 /// stratified as its samples are; it is noisy in each pixel, and right in the mean over all.

@@ -20,7 +20,7 @@ TableUse AllTables(const RenderNeeds& needs) {
 }
 
 std::string StatisticsToJson(const RenderRecord& record, const RenderResult& result, const RenderNeeds& needs,
-                             const Film& film, const Scene& renderedScene) {
+                             const Film& film, const std::optional<ErrorEstimate>& error) {
   const PassStats& stats = result.stats;
   const SceneResources& scene = needs.scene;
   nlohmann::ordered_json json = {
@@ -58,7 +58,7 @@ std::string StatisticsToJson(const RenderRecord& record, const RenderResult& res
   };
   for (const auto& [source, count] : film.NonFiniteBySource()) json["nonFiniteSources"][source] = count;
   if (film.RefusedCount() > 0) json["nonFiniteSources"][kBeyondFilm] = film.RefusedCount();
-  if (const auto error = EstimateError(film, renderedScene.Settings().exposure)) {
+  if (error) {
     json["error"] = {{"total", error->Total()}, {"noise", error->noise}, {"bias", nullptr}};
     if (film.TracksBlur()) json["error"]["bias"] = error->bias;
   }

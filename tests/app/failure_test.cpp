@@ -38,11 +38,67 @@ TEST_F(Failure, AFullDiskLeavesNoHalfPicture) {
   WriteScene("tiny.pbrt");
   const std::vector<std::string> before = Files();
   for (const std::string name : {"a.exr", "a.png", "a.dapple"}) {
-    const ProgramResult result = Run("tiny.pbrt --quiet --integrator path --passes 1 -o " + name, FilesUpTo(100));
+    const ProgramResult result = Run("tiny.pbrt --quiet --integrator path --passes 1 -o " + name, FilesUpTo(300));
     EXPECT_EQ(result.exitCode, 1);
-    EXPECT_EQ(result.err, name + ": error: cannot write the file: File too large\n");
+    EXPECT_EQ(result.err, name + ": error: cannot write the file: File too large\n" + name +
+                              ".checkpoint: error: cannot write the file: File too large\n")
+        << "nor can the state be kept";
     EXPECT_EQ(Files(), before) << "nothing is left, no temporary file either";
   }
+}
+
+/// What is written to `name` meets a full disk.
+void MakeFull(const std::string& path) { std::filesystem::create_symlink("/dev/full", path); }
+
+const std::string kFull = ": error: cannot write the file: No space left on device\n";
+
+// Hours of work do not hang on the first of their files.
+TEST_F(Failure, AnOutputThatCannotBeWrittenCostsNoOtherAndThePassesAreKept) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --quiet --integrator path --passes 3 ";
+  ASSERT_EQ(Run(command + "-o whole.exr").exitCode, 0);
+  MakeFull(Path("full.exr"));
+  MakeFull(Path("full.json"));
+  const ProgramResult result = Run(command + "-o full.exr -o b.exr --stats s.json");
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_EQ(result.err, "full.exr" + kFull +
+                            "kept: 3 passes; to go on, give the same command with --resume (it reads "
+                            "full.exr.checkpoint)\n");
+  EXPECT_TRUE(Read("b.exr") == Read("whole.exr"));
+  EXPECT_TRUE(Contains(Read("s.json"), "\"passes\": 3"));
+  std::filesystem::remove(Path("full.exr"));
+  std::filesystem::remove(Path("b.exr"));
+  const ProgramResult statistics = Run(command + "-o full.exr -o b.exr --stats full.json --resume");
+  EXPECT_EQ(statistics.exitCode, 1);
+  EXPECT_EQ(statistics.err, "full.json" + kFull);
+  EXPECT_TRUE(Read("full.exr") == Read("whole.exr"));
+  EXPECT_TRUE(Read("b.exr") == Read("whole.exr"));
+}
+
+TEST_F(Failure, AnOutputOfAMergeThatCannotBeWrittenCostsNoOther) {
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --quiet --integrator path --passes ";
+  for (const char* passes : {"2 -o whole.exr", "0:1", "1:2"}) ASSERT_EQ(Run(command + passes).exitCode, 0);
+  MakeFull(Path("full.exr"));
+  const ProgramResult result = Run("merge tiny.0-1.dapple tiny.1-2.dapple -o full.exr -o b.exr");
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_EQ(result.err, "full.exr" + kFull);
+  EXPECT_TRUE(BeginsWith(result.out, "b.exr\npasses    0 to 1 of 2 files\n"));
+  EXPECT_TRUE(Read("b.exr") == Read("whole.exr"));
+}
+
+// That picture and checkpoint are there is what the code promises; how to go on is told whatever else fails.
+TEST_F(Failure, WhatCannotBeToldChangesNothingOfWhatASignalLeaves) {
+  WriteScene("tiny.pbrt");
+  MakeFull(Path("full.json"));
+  const ProgramResult result =
+      RunAndSignal("tiny.pbrt --integrator path --time 600 -o a.exr --stats full.json >/dev/full 2>stderr.txt #",
+                   SIGTERM, " %: 1 pass, ");
+  EXPECT_EQ(result.exitCode, 128 + SIGTERM);
+  EXPECT_TRUE(Contains(result.err, "to go on, give the same command with --resume (it reads a.exr.checkpoint)\n"));
+  EXPECT_TRUE(Contains(result.err, "full.json" + kFull));
+  EXPECT_TRUE(Contains(result.err, "error: cannot write to the standard output: "));
+  EXPECT_TRUE(Exists("a.exr") && Exists("a.exr.checkpoint"));
 }
 
 TEST_F(Failure, AFullDiskLeavesTheOldPicture) {
@@ -139,7 +195,7 @@ TEST_F(Failure, APictureForAReaderThatLeavesIsAnError) {
   kill(reader, SIGKILL);  // where the program never came to write
   waitpid(reader, nullptr, 0);
   EXPECT_EQ(result.exitCode, 1);
-  EXPECT_EQ(result.err, "pipe.exr: error: cannot write the file: Broken pipe\n");
+  EXPECT_TRUE(BeginsWith(result.err, "pipe.exr: error: cannot write the file: Broken pipe\nkept: 1 pass; "));
 }
 
 TEST_F(Failure, ARenderIsNotLostForWantOfAListener) {

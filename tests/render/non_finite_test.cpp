@@ -120,7 +120,7 @@ void ExpectOnly(const Scene& scene, const Rendered& rendered, const NonFiniteSou
     EXPECT_EQ(found, source) << NameOf(found, scene);
     EXPECT_EQ(NameOf(found, scene), name);
   }
-  const auto json = nlohmann::json::parse(StatisticsToJson({}, rendered.result, {}, rendered.film, scene));
+  const auto json = nlohmann::json::parse(StatisticsToJson({}, rendered.result, {}, rendered.film, {}));
   EXPECT_EQ(json["nonFinite"], counts.Total());
   EXPECT_EQ(json["nonFiniteSources"], (nlohmann::json{{name, counts.Total()}}));
   EXPECT_EQ(DescribeNonFinite(rendered.film), std::to_string(counts.Total()) + " of " + name);
