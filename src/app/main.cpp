@@ -44,7 +44,8 @@ int Parse(CLI::App& program, std::vector<std::string> arguments) {
 
 int Run(int argc, char** argv) {
   CLI::App program("Dapple renders light from the light's side: photon mapping of pbrt scenes.", "dapple");
-  program.set_version_flag("--version", fmt::format("dapple {}, {}", Version(), InstructionSet()));
+  program.set_version_flag(
+      "--version", fmt::format("dapple {}, {}, sources {}, {}", Version(), InstructionSet(), SourceHash(), Compiler()));
   program.require_subcommand(1);
   program.footer(kFooter);
   program.failure_message([](const CLI::App* app, const CLI::Error& error) {

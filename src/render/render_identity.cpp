@@ -1,20 +1,67 @@
 #include "src/render/render_identity.h"
 
+#include <algorithm>
+#include <string_view>
+
 #include <fmt/format.h>
 
+#include "src/render/shared_libraries.h"
 #include "src/render/version.h"
 
 namespace dapple {
 
 namespace {
 
+constexpr std::string_view kLibraries = "shared libraries";
+constexpr std::string_view kExtensions = "processor extensions";
+
 /// Where both builds are portable this is of no account.
-bool IsOfMachine(const std::string& name) { return name == "build" || name == "processor"; }
+bool IsOfMachine(const std::string& name) { return name == "build" || name == "processor" || name == kExtensions; }
+
+std::vector<std::string> Items(std::string_view list) {
+  constexpr std::string_view kComma = ", ";
+  std::vector<std::string> items;
+  while (!list.empty()) {
+    const size_t end = std::min(list.find(kComma), list.size());
+    items.emplace_back(list.substr(0, end));
+    list.remove_prefix(std::min(end + kComma.size(), list.size()));
+  }
+  return items;
+}
+
+/// The items of the first list that are not in the second.
+std::vector<std::string> Beyond(const std::string& list, const std::string& other) {
+  std::vector<std::string> items = Items(list);
+  const std::vector<std::string> others = Items(other);
+  std::erase_if(items, [&](const std::string& item) { return std::ranges::find(others, item) != others.end(); });
+  return items;
+}
+
+/// The names, without the ids, of those that only one of both has.
+std::string DifferenceOfLibraries(const std::string& value, const std::string& expected) {
+  std::vector<std::string> names = Beyond(value, expected);
+  std::ranges::copy(Beyond(expected, value), std::back_inserter(names));
+  for (std::string& name : names) name.resize(std::min(name.find(' '), name.size()));
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return fmt::format("the installed {} {}", kLibraries, fmt::join(names, ", "));
+}
+
+std::string DifferenceOfExtensions(const std::string& value, const std::string& expected) {
+  const std::vector<std::string> more = Beyond(value, expected), less = Beyond(expected, value);
+  std::string text = "a processor";
+  if (!more.empty()) text += fmt::format(" with {}", fmt::join(more, ", "));
+  if (!less.empty()) text += fmt::format("{} without {}", more.empty() ? "" : " and", fmt::join(less, ", "));
+  return text;
+}
 
 /// One difference. A hash says nothing to people, but that it differs.
 std::string Difference(const std::string& name, const std::string& value, const std::string& expected) {
   if (name == "scene") return "the scene's content";
+  if (name == "sources") return "the sources that the program was built of";
   if (name == "build") return "the build of the program";
+  if (name == kLibraries) return DifferenceOfLibraries(value, expected);
+  if (name == kExtensions) return DifferenceOfExtensions(value, expected);
   return fmt::format("{} {}, not {}", name, value.empty() ? "untold" : value, expected.empty() ? "told" : expected);
 }
 
@@ -44,8 +91,12 @@ RenderIdentity MakeIdentity(const SceneIdentity& scene, const Film& film, const 
   for (auto& option : DescribeOptions(options)) identity.fields.push_back(std::move(option));
   identity.fields.insert(identity.fields.end(), {{"version", Version()},
                                                  {"instruction set", InstructionSet()},
+                                                 {"sources", SourceHash()},
+                                                 {"compiler", Compiler()},
+                                                 {std::string(kLibraries), SharedLibraries()},
                                                  {"build", BuildId()},
-                                                 {"processor", ProcessorName()}});
+                                                 {"processor", ProcessorName()},
+                                                 {std::string(kExtensions), ProcessorExtensions()}});
   return identity;
 }
 

@@ -11,7 +11,7 @@
 
 namespace dapple {
 
-/// Names and values; the values of "scene" and "build" are hashes. In the order in which they are told.
+/// Names and values; the values of "scene", "sources" and "build" are hashes. In the order in which they are told.
 struct RenderIdentity {
   std::vector<std::pair<std::string, std::string>> fields;
 
@@ -30,7 +30,8 @@ RenderIdentity MakeIdentity(const SceneIdentity& scene, const Film& film, const 
                             const std::string& integrator, const IntegratorOptions& options, int seed);
 
 /// What of `other` is not as in `expected`, for people: "seed 8, not 7; the scene's content"; empty where the passes of
-/// both are of one picture. Between portable builds it does not matter which build and which processor.
+/// both are of one picture. Between portable builds of the same sources, by the same compiler and with
+/// the same shared libraries, it does not matter which file the program is and on which processor it runs.
 std::string Differences(const RenderIdentity& other, const RenderIdentity& expected);
 
 }  // namespace dapple

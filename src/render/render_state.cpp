@@ -16,7 +16,8 @@ namespace dapple {
 namespace {
 
 // The file: a head of two lines, what it is and, as JSON, the origin; the film's bytes; the hash of head and film.
-constexpr std::string_view kFirstLine = "dapple render state 1\n";
+constexpr std::string_view kKind = "dapple render state ";
+constexpr std::string_view kFirstLine = "dapple render state 2\n";
 constexpr size_t kHashDigits = 32;
 
 std::string OriginToJson(const RenderOrigin& origin) {
@@ -91,6 +92,10 @@ RenderState ReadState(const std::string& path) {
   const FileLocation location(path);
   const std::string bytes = ReadBytes(path);
   const std::string_view all = bytes;
+  if (all.starts_with(kKind) && !all.starts_with(kFirstLine))
+    throw Error(location,
+                "another version of the program wrote this state of a render, which does not tell whether its passes "
+                "are of the same picture: expected one of this version");
   if (!all.starts_with(kFirstLine))
     throw Error(location, "not the state of a render: expected a file that `dapple render` wrote");
   const size_t headEnd = all.find('\n', kFirstLine.size()) + 1;  // 0 where there is no second line

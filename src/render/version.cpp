@@ -1,8 +1,14 @@
 #include "src/render/version.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <sstream>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "src/base/content_hash.h"
 #include "src/base/error.h"
@@ -26,6 +32,27 @@ constexpr std::string_view kVectors =
 #endif
 
 constexpr std::string_view kPortable = "portable";
+
+#if defined(__clang__)
+constexpr std::string_view kCompiler = __VERSION__;
+#else
+constexpr std::string_view kCompiler = "GCC " __VERSION__;
+#endif
+
+/// Beginnings of the names of extensions by which Embree, the C library and others choose among versions of a function.
+/// What a newer kernel tells beside them (of caches, of its own mitigations) is no difference.
+constexpr std::array<std::string_view, 14> kExtensions = {"abm",   "amx", "asimd",  "avx", "bmi",  "f16c", "fma",
+                                                          "lzcnt", "pni", "popcnt", "sse", "ssse", "sve",  "xop"};
+
+/// The value of the first line of /proc/cpuinfo that begins with `name`; "" where there is none.
+std::string OfFirstProcessor(std::string_view name) {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(": ");
+    if (line.starts_with(name) && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "";
+}
 
 std::string HashOfOwnFile() {
   std::ifstream file("/proc/self/exe", std::ios::binary);
@@ -53,13 +80,24 @@ std::string BuildId() {
   return id;
 }
 
+std::string Compiler() {
+  constexpr std::string_view kFlags = DAPPLE_COMPILER_FLAGS;
+  return std::string(kCompiler) + (kFlags.empty() ? "" : " ") + std::string(kFlags);
+}
+
 std::string ProcessorName() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
+  const std::string name = OfFirstProcessor("model name");
+  return name.empty() ? "unknown" : name;
+}
+
+std::string ProcessorExtensions() {
+  const std::string flags = OfFirstProcessor("flags");
+  std::istringstream words(flags.empty() ? OfFirstProcessor("Features") : flags);
+  std::set<std::string> extensions;
+  for (std::string word; words >> word;)
+    if (std::ranges::any_of(kExtensions, [&](std::string_view name) { return word.starts_with(name); }))
+      extensions.insert(word);
+  return extensions.empty() ? "unknown" : fmt::format("{}", fmt::join(extensions, ", "));
 }
 
 }  // namespace dapple

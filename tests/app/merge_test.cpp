@@ -1,9 +1,14 @@
 // A render in parts: ranges of passes, rendered apart and joined, are the file of one render; or it is told what is
 // wrong with them.
 #include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <string>
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <link.h>
 
 #include "integrators/integrator.h"
 #include "src/image/image_io.h"
@@ -83,6 +88,48 @@ TEST_F(Merge, RefusesPartsOfAnotherRenderAndSaysWhatDiffers) {
   EXPECT_EQ(difference("same.pbrt --integrator path"), "");
 }
 
+/// The file that the loader takes for a library of that name.
+std::string BytesOfLibrary(const char* name) {
+  void* const library = dlopen(name, RTLD_NOW);
+  link_map* map = nullptr;
+  if (!library || dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) return "";
+  std::ifstream file(map->l_name, std::ios::binary);
+  dlclose(library);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A part rendered with a library of another build, and one with a library that has no build id, are told.
+TEST_F(Merge, AnotherLibraryOfTheSameNameIsADifference) {
+  const std::string library = BytesOfLibrary("libz.so.1");
+  const std::string head("\4\0\0\0\24\0\0\0\3\0\0\0GNU\0", 16);  // of the note that holds a build id of 20 bytes
+  const size_t note = library.find(head);
+  ASSERT_NE(note, std::string::npos);
+  std::filesystem::create_directory(Path("lib"));
+  WriteScene("tiny.pbrt");
+  const auto render = [&](const std::string& arguments, const std::string& bytes) {
+    Write("lib/libz.so.1", bytes);
+    const std::string folder = Path("lib");
+    const ProgramResult result =
+        Run("tiny.pbrt --quiet --integrator path " + arguments, [&] { setenv("LD_LIBRARY_PATH", folder.c_str(), 1); });
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+  };
+  std::string other = library, nameless = library;
+  other[note + head.size()] ^= 1;
+  nameless[note + 8] = 99;
+  ASSERT_EQ(Run("tiny.pbrt --quiet --integrator path --passes 0:1 -o first.dapple").exitCode, 0);
+  render("--passes 1:2 -o copied.dapple", library);
+  render("--passes 1:2 -o other.dapple", other);
+  render("--passes 1:2 -o nameless.dapple", nameless);
+  render("--passes 0:1 -o also-nameless.dapple", nameless);
+  EXPECT_EQ(Run("merge first.dapple copied.dapple -o out.exr").exitCode, 0);
+  EXPECT_EQ(Run("merge also-nameless.dapple nameless.dapple -o out.exr").exitCode, 0);
+  for (const std::string part : {"other.dapple", "nameless.dapple"}) {
+    const std::string end =
+        ": error: it is of another render than those before it: the installed shared libraries libz.so.1\n";
+    EXPECT_EQ(Run("merge first.dapple " + part + " -o out.exr").err, part + end);
+  }
+}
+
 // No direction is drawn toward lights: how it would be is no difference, and none in the picture.
 TEST_F(Merge, SamplingOfAnEnvironmentThatNothingAsksIsNoDifference) {
   WriteScene("point.pbrt");
@@ -116,8 +163,8 @@ TEST_F(Merge, RefusesFilesThatAreNoParts) {
     EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
   };
   error("");
-  error("dapple render state 1\n");
-  error("dapple render state 1\n{}\n");
+  error("dapple render state 2\n");
+  error("dapple render state 2\n{}\n");
   error(Read("tiny.pbrt"));
   error(part.substr(0, part.size() / 2));
   error(part + "more");

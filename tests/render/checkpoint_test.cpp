@@ -107,5 +107,19 @@ TEST_F(CheckpointTest, DamageIsFoundWhereverItIs) {
   }
 }
 
+TEST_F(CheckpointTest, AnotherVersionsStateIsToldAsOne) {
+  WriteState(path_, Origin(), SmallFilm(2));
+  std::ifstream file(path_, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  bytes.replace(0, bytes.find('\n'), "dapple render state 1");
+  std::ofstream(path_, std::ios::binary) << bytes;
+  try {
+    Checkpoint(path_, Origin(), 10).Load({.passes = 5, .seconds = {}});
+    ADD_FAILURE() << "it was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("another version of the program"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace dapple
