@@ -4,7 +4,7 @@
 //   DensitySum sum(kernel, hit, bsdf.Flags().HasTransmission(), radius, film.TracksBlur());
 //   map.ForEachWithin(hit.p, radius, [&](position, photon, distanceSquared) {
 //     const PhotonPlace place{position, distanceSquared, photon.normal.Decode(), wi};
-//     if (sum.Takes(place)) sum.Add(place, value, cosine);
+//     if (sum.Takes(place)) sum.Add(place, value);
 //   });
 //   const PathEstimate estimate = sum.Estimate(scene, seed, &stats.probeRays);
 #pragma once
@@ -42,9 +42,12 @@ class DensitySum {
     return IsOnSameSurface(site_, at.position, at.distanceSquared, at.normal, at.wi);
   }
 
-  /// Adds the `value` of a photon that is taken: its flux times the BSDF with the shading normal's cosine, W / sr.
-  /// Photons are dense by the `cosine` (> 0) of their direction and the geometric normal, so it is divided out.
-  void Add(const PhotonPlace& at, const Color& value, float cosine, float weight = 1) {
+  /// Adds the `value` of a photon that is taken: its `ShadedFlux` times the BSDF with its cosine (`Bsdf::Eval`), W /
+  /// sr. The photon has the cosine of its own shading normal, so that of the gathering point's is divided out; what
+  /// bumps do to it stays.
+  void Add(const PhotonPlace& at, const Color& value, float weight = 1) {
+    const float cosine = AbsDot(hit_.ns, at.wi);
+    if (!(cosine > 0)) return;
     sum_ += value * (kernel_(at.distanceSquared) / cosine * weight);
     if (at.distanceSquared < narrowSquared_ &&
         IsOnSameSurface(narrowSite_, at.position, at.distanceSquared, at.normal, at.wi))

@@ -53,7 +53,7 @@ PassStats HybridIntegrator::ShootPhotons(int pass, Merging* merging) const {
           const MergingWeights::Sums& others = walk.Arrive(v);
           // Light straight from its source is sampled where it is needed.
           if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
-          chunk.Store(v.hit.p, {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng),
+          chunk.Store(v.hit.p, {ShadedFlux(v), OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng),
                                 ToFloatRange(others.merging), ToFloatRange(others.paths), v.scattered});
         };
         const auto scatter = [&](const LightVertex& v, const BsdfSample& next) { walk.Scatter(v, next); };
@@ -172,9 +172,6 @@ PathEstimate HybridIntegrator::Merge(const Walk& walk, const Merging& merging, c
     const Vec3 wi = photon.wi.Decode();
     const PhotonPlace place{position, distanceSquared, photon.normal.Decode(), wi};
     if (!sum.Takes(place)) return;
-    // Eval has the shading normal's cosine.
-    const float cosine = AbsDot(hit.ng, wi);
-    if (!(cosine > 0)) return;
     const Color value = bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux;
     if (value.IsBlack()) return;
     const double pdf = static_cast<double>(bsdf.Pdf(hit.wo, wi, TransportMode::Radiance));
@@ -182,7 +179,7 @@ PathEstimate HybridIntegrator::Merge(const Walk& walk, const Merging& merging, c
                     (static_cast<double>(photon.paths) +
                      walk.mergeProbability * Sharpness(pdf) * static_cast<double>(photon.merging));
     if (before > 0) others += static_cast<double>(bsdf.Pdf(wi, hit.wo, TransportMode::Importance)) * before;
-    sum.Add(place, value, cosine, static_cast<float>(at.eta / (eta + others)));
+    sum.Add(place, value, static_cast<float>(at.eta / (eta + others)));
   });
   const PathEstimate estimate = sum.Estimate(*scene_, seed, &stats.probeRays);
   const auto paths = static_cast<float>(plan_->paths);

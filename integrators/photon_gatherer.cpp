@@ -46,7 +46,8 @@ PhotonGatherer::PhotonPass PhotonGatherer::TracePhotons(int pass, bool tracksBlu
     const auto store = [&](const LightVertex& v) {
       // Light straight from its source is sampled where it is needed.
       if (v.scattered == 0 || v.bsdf.IsPurelySpecular()) return;
-      chunk.Store(v.hit.p, {v.flux, OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
+      chunk.Store(v.hit.p,
+                  {ShadedFlux(v), OctahedralVector(v.hit.wo), OctahedralVector(v.hit.ng), v.scattered, v.isCaustic});
     };
     AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, store), emitted, &chunk.stats);
   };
@@ -141,9 +142,7 @@ PathEstimate PhotonGatherer::Gather(const Map& map, float radius, bool tracksBlu
     const Vec3 wi = photon.wi.Decode();
     const PhotonPlace place{position, distanceSquared, photon.normal.Decode(), wi};
     if (!sum.Takes(place)) return;
-    // Eval has the shading normal's cosine.
-    const float cosine = AbsDot(hit.ng, wi);
-    if (cosine > 0) sum.Add(place, point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux, cosine);
+    sum.Add(place, point.bsdf.Eval(hit.wo, wi, TransportMode::Radiance) * photon.flux);
   });
   const PathEstimate estimate = sum.Estimate(*scene_, point.seed, &stats.probeRays);
   return {Finite(estimate.radiance, &stats.nonFinite,

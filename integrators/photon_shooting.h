@@ -58,6 +58,16 @@ inline void AddLightPath(const LightPathEnd& end, const EmissionSample& emitted,
                                         : NonFiniteSource::Material(end.material));
 }
 
+/// The flux of a photon as surfaces gather it. Photons lie as densely as their surface is turned to where they come
+/// from; a surface is as bright as its shading normal is turned there. The ratio is that of the photon's own place: a
+/// facet that light grazes leaves few photons, and must not count the many of the next facet as so few.
+inline Color ShadedFlux(const LightVertex& vertex) {
+  const SurfaceInteraction& hit = vertex.hit;
+  if (hit.ns == hit.ng) return vertex.flux;
+  const float cosine = AbsDot(hit.ng, hit.wo);
+  return cosine > 0 ? vertex.flux * (AbsDot(hit.ns, hit.wo) / cosine) : Color();
+}
+
 /// Photons where they met surfaces: `photons[i]` stands at `positions[i]`.
 template <typename Photon>
 struct ShotPhotons {

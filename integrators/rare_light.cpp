@@ -165,9 +165,10 @@ void Arrive(const std::vector<Place>& places, const PlaceMap& map, const LightVe
     const Vec3& wi = vertex.hit.wo;
     const GatherSite site(place.hit.p, place.hit.ng, place.hit.wo, place.reach, place.bsdf->Flags().HasTransmission());
     if (!IsOnSameSurface(site, vertex.hit.p, distanceSquared, vertex.hit.ng, wi)) return;
-    const float cosine = AbsDot(place.hit.ng, wi);
+    const float cosine = AbsDot(place.hit.ns, wi);
     if (!(cosine > 0)) return;
-    const Color value = place.throughput * place.bsdf->Eval(place.hit.wo, wi, TransportMode::Radiance) * vertex.flux;
+    const Color value =
+        place.throughput * place.bsdf->Eval(place.hit.wo, wi, TransportMode::Radiance) * ShadedFlux(vertex);
     const double c = static_cast<double>(value.Average() / cosine);
     const double density = paths * static_cast<double>(place.bsdf->Pdf(place.hit.wo, wi, TransportMode::Radiance));
     if (!(c > kSeldom * (place.radiance + darkest) * density)) return;

@@ -1,5 +1,5 @@
-// What density estimation on surfaces must not do: let light through walls, and depend on where a scene lies and how
-// large it is.
+// What density estimation on surfaces must not do: let light through walls, show the facets of what is shaded round,
+// and depend on where a scene lies and how large it is.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -55,6 +55,46 @@ TEST(PhotonGather, NothingLeaksThroughWallsATenthOfTheRadiusThick) {
       for (const char* lookAt : {"0 -4 0  0 0 0", "-2.4 -2.4 1.2  -1 -1 0.95"})
         EXPECT_LT(SeenOfRoom(integrator, outside, lookAt), 1e-4 * lit)
             << integrator << ": " << outside << " seen from " << lookAt;
+  }
+}
+
+/// A ball of 8 x 12 facets that is shaded round, at the height 1.5.
+std::string RoundBallOfFacets() {
+  constexpr int kRings = 8, kSides = 12;
+  std::string points, normals, indices;
+  for (int ring = 0; ring <= kRings; ++ring) {
+    const double theta = kPiD * ring / kRings;
+    for (int side = 0; side < kSides; ++side) {
+      const double phi = 2 * kPiD * (side + 0.5 * (ring % 2)) / kSides;
+      const double x = std::sin(theta) * std::cos(phi), y = std::sin(theta) * std::sin(phi), z = std::cos(theta);
+      points += fmt::format("{} {} {} ", x, y, z + 1.5);
+      normals += fmt::format("{} {} {} ", x, y, z);
+      const int a = ring * kSides + side, b = ring * kSides + (side + 1) % kSides;
+      if (ring < kRings) indices += fmt::format("{0} {1} {2} {1} {3} {2} ", a, b, a + kSides, b + kSides);
+    }
+  }
+  return "Shape \"trianglemesh\" \"point P\" [" + points + "] \"normal N\" [" + normals + "] \"integer indices\" [" +
+         indices + "] ";
+}
+
+// Where light grazes a facet its few photons count for much, and the many of the next facet must not. Of the algorithms
+// that see these gathers directly.
+TEST(PhotonGather, FacetsThatAreShadedRoundHaveNoBrightEdges) {
+  const auto scene = SceneFromText(
+      "LookAt 0 -6 2  0 0 1.5  0 0 1 Camera \"perspective\" \"float fov\" [24] "
+      "Film \"image\" \"integer xresolution\" [48] \"integer yresolution\" [48] WorldBegin "
+      "LightSource \"spot\" \"rgb I\" [200 200 200] \"point from\" [3 -1 4] \"point to\" [2.2 -0.5 0] "
+      "\"float coneangle\" [14] \"float conedeltaangle\" [2] Material \"matte\" \"rgb Kd\" [.8 .8 .8] "
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-6 -6 0 6 -6 0 6 6 0 -6 6 0] " +
+      RoundBallOfFacets() + "WorldEnd");
+  IntegratorOptions options;
+  options.maxDepth = 2;
+  const Image expected = RenderGroups(*scene, "path", options, 1024, 1).Mean();
+  options.photonsPerPass = 20000;
+  for (const std::string integrator : {"sppm", "hybrid"}) {
+    const ImageDifference difference = CompareImages(RenderGroups(*scene, integrator, options, 32, 1).Mean(), expected);
+    EXPECT_NEAR(difference.meanRatio, 1, 0.02) << integrator;
+    EXPECT_LT(difference.relativeMse, 0.002) << integrator;
   }
 }
 
