@@ -5,6 +5,7 @@
 #include "integrators/camera_path.h"
 #include "integrators/emission_ratio.h"
 #include "integrators/merging_weights.h"
+#include "src/photons/camera_pilot.h"
 #include "src/photons/light_path.h"
 
 namespace dapple {
@@ -15,12 +16,6 @@ struct MergeSite {
   double eta = 0;      ///< weight of merging, scene units squared, see merging_weights.h
   double photons = 0;  ///< of this pass, expected within the radius
 };
-
-/// How narrow a scattering is that goes a way of this density: 0 for the widest, 1 for specular ones.
-inline double Sharpness(double pdf) {
-  constexpr double kHalfSharp = 10;  // per solid angle: a lobe of about 0.1 sr
-  return pdf / (pdf + kHalfSharp);
-}
 
 /// The probability with which a camera path goes on, along a way of this density, from where it gathered so many
 /// photons.

@@ -2,11 +2,20 @@
 
 #include "integrators/density_sum.h"
 #include "integrators/guided_bsdf.h"
-#include "src/photons/camera_pilot.h"
 #include "src/photons/radius_schedule.h"
 #include "src/sampling/mis.h"
 
 namespace dapple {
+
+namespace {
+
+/// Surfaces that look in few enough directions for camera paths to go on through them, as through mirrors.
+bool IsGlossy(const Bsdf& bsdf) {
+  constexpr float kMaxRoughness = 0.25f;  // GGX alpha
+  return !bsdf.Flags().HasDiffuse() && bsdf.MinRoughness() < kMaxRoughness;
+}
+
+}  // namespace
 
 void PhotonGatherer::Prepare(const Scene& scene, uint64_t seed) {
   scene_ = &scene;

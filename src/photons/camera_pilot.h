@@ -9,13 +9,14 @@
 
 namespace dapple {
 
-/// Surfaces that look in few enough directions for camera paths to go on through them, as through mirrors.
-inline bool IsGlossy(const Bsdf& bsdf) {
-  constexpr float kMaxRoughness = 0.25f;  // GGX alpha
-  return !bsdf.Flags().HasDiffuse() && bsdf.MinRoughness() < kMaxRoughness;
+/// How narrow a scattering is that goes a way of this density: 0 for the widest, 1 for specular ones.
+inline double Sharpness(double pdf) {
+  constexpr double kHalfSharp = 10;  // per solid angle: a lobe of about 0.1 sr
+  return pdf / (pdf + kHalfSharp);
 }
 
-/// Walks a camera path through specular and glossy surfaces and through `finalGathers` others, and calls `visit(const
+/// Walks a camera path through specular surfaces, through others the more likely the narrower they scatter (with the
+/// probability `Sharpness`: no roughness decides), and through `finalGathers` more. Calls `visit(const
 /// SurfaceInteraction&, const Bsdf&, float distance)`, with the length of the path so far, at each that is neither
 /// black nor purely specular. Returns the number of segments traced. Uses block n of the sampler at its n-th surface.
 template <typename Visitor>
@@ -36,14 +37,13 @@ int FollowCameraPath(const Scene& scene, const CameraRay& camera, int finalGathe
     }
     const Bsdf bsdf = material->GetBsdf(*hit);
     if (bsdf.IsBlack()) break;
-    if (!bsdf.IsPurelySpecular()) {
-      visit(*hit, bsdf, distance);
-      if (!IsGlossy(bsdf) && finalGathers-- == 0) break;
-    }
+    if (!bsdf.IsPurelySpecular()) visit(*hit, bsdf, distance);
     sampler.StartBlock(bounce++);
     const double uLobe = sampler.Get1D();
     const std::optional<BsdfSample> next = bsdf.Sample(hit->wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
     if (!next) break;
+    if (!next->IsSpecular() && sampler.Get1D() >= Sharpness(static_cast<double>(next->pdf)) && finalGathers-- == 0)
+      break;
     ray = SpawnRay(*hit, next->wi);
   }
   return segments;

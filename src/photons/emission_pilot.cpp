@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/base/hash.h"
+#include "src/base/octahedral.h"
 #include "src/base/parallel.h"
 #include "src/photons/camera_pilot.h"
 #include "src/photons/light_path.h"
@@ -16,46 +17,59 @@ namespace {
 constexpr uint64_t kPilot = 2;
 constexpr int64_t kMostPhotons = 1 << 16;
 
-/// Points that the camera looks at; each stands for the surface within its reach.
+/// A point that the camera looks at; it stands for the surface within its reach.
+struct VisiblePoint {
+  float reach = 0;
+  OctahedralVector n{Vec3(0, 0, 1)};  ///< normal on the side from which it is seen
+  bool transmits = false;
+};
+
 struct VisiblePoints {
-  PhotonMap<float> reaches;
+  PhotonMap<VisiblePoint> map;
   float maxReach = 0;
 
-  bool IsNear(const Vec3& p) const {
-    bool isNear = false;
-    reaches.ForEachWithin(p, maxReach, [&](const Vec3&, float reach, float distanceSquared) {
-      isNear |= distanceSquared < reach * reach;
+  /// Whether light that comes from `hit.wo` arrives near one of them, on a surface that lies like theirs and on a side
+  /// that they are seen from.
+  bool AreLit(const SurfaceInteraction& hit) const {
+    constexpr float kMinNormalCosine = 0.5f;
+    const Vec3 lit = FaceForward(hit.ng, hit.wo);
+    bool areLit = false;
+    map.ForEachWithin(hit.p, maxReach, [&](const Vec3&, const VisiblePoint& point, float distanceSquared) {
+      if (areLit || !(distanceSquared < Sqr(point.reach))) return;
+      const float cosine = Dot(lit, point.n.Decode());
+      areLit = (point.transmits ? std::abs(cosine) : cosine) > kMinNormalCosine;
     });
-    return isNear;
+    return areLit;
   }
 };
 
 VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t seed) {
   constexpr int kPaths = 8192;
-  std::vector<Vec3> points;
-  std::vector<float> reaches;
+  std::vector<Vec3> positions;
+  std::vector<VisiblePoint> points;
   const double step = ForEachPilotRay(scene, kPaths, seed, [&](const CameraRay& camera, Sampler& sampler) {
-    FollowCameraPath(scene, camera, finalGathers, sampler,
-                     [&](const SurfaceInteraction& hit, const Bsdf&, float distance) {
-                       points.push_back(hit.p);
-                       // What lies between this point and those of the next paths, seen at a slant; in pixels first.
-                       constexpr float kMinCosine = 0.2f;
-                       const float width = camera.footprintAtLens + camera.footprintSpread * distance;
-                       reaches.push_back(width / std::max(kMinCosine, AbsDot(hit.ng, hit.wo)));
-                     });
+    FollowCameraPath(
+        scene, camera, finalGathers, sampler, [&](const SurfaceInteraction& hit, const Bsdf& bsdf, float distance) {
+          positions.push_back(hit.p);
+          // What lies between this point and those of the next paths, seen at a slant; in pixels first.
+          constexpr float kMinCosine = 0.2f;
+          const float width = camera.footprintAtLens + camera.footprintSpread * distance;
+          const float reach = width / std::max(kMinCosine, AbsDot(hit.ng, hit.wo));
+          points.push_back({reach, OctahedralVector(FaceForward(hit.ng, hit.wo)), bsdf.Flags().HasTransmission()});
+        });
   });
-  for (float& reach : reaches) reach *= static_cast<float>(step);
   if (points.empty()) return {};
   // Far points would reach over all others.
-  std::vector<float> sorted = reaches;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<int64_t>(sorted.size() / 2), sorted.end());
-  const float longest = 4 * sorted[sorted.size() / 2];
+  std::vector<float> reaches;
+  for (const VisiblePoint& point : points) reaches.push_back(point.reach);
+  const auto middle = reaches.begin() + static_cast<ptrdiff_t>(reaches.size() / 2);
+  std::nth_element(reaches.begin(), middle, reaches.end());
   VisiblePoints visible;
-  for (float& reach : reaches) {
-    reach = std::min(reach, longest);
-    visible.maxReach = std::max(visible.maxReach, reach);
+  for (VisiblePoint& point : points) {
+    point.reach = std::min(point.reach, 4 * *middle) * static_cast<float>(step);
+    visible.maxReach = std::max(visible.maxReach, point.reach);
   }
-  visible.reaches = PhotonMap<float>(std::move(points), reaches);
+  visible.map = PhotonMap<VisiblePoint>(std::move(positions), std::move(points));
   return visible;
 }
 
@@ -127,7 +141,7 @@ EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGath
   const VisiblePoints visible = FindVisiblePoints(scene, finalGathers, Hash(seed, kPilot));
   if (visible.maxReach == 0) return {};
   return Learn(scene, maxDepth, seed,
-               [&](const LightVertex& vertex) { return vertex.scattered > 0 && visible.IsNear(vertex.hit.p); });
+               [&](const LightVertex& vertex) { return vertex.scattered > 0 && visible.AreLit(vertex.hit); });
 }
 
 EmissionGuide LearnJoinedEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed) {

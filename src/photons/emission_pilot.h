@@ -12,9 +12,9 @@ namespace dapple {
 int64_t EmissionPilotBytes(const Scene& scene);
 
 /// Follows a few thousand camera paths to the surfaces that gather photons, then rounds of photons, each round guided
-/// by those before it. A photon is of use where it lands near such a point with at least one scattering event behind
-/// it. `finalGathers`: diffuse scatterings of a camera path before it gathers. The
-/// result depends on the arguments alone; it bends nothing where no photon came to anything.
+/// by those before it. A photon is of use where it lands near such a point, on the side that is seen, with at least one
+/// scattering event behind it. `finalGathers`: diffuse scatterings of a camera path before it gathers. The result
+/// depends on the arguments alone; it bends nothing where no photon came to anything.
 EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed);
 
 /// The same for light paths whose vertices are joined to the camera: a vertex is of use where it is in the picture.
