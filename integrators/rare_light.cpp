@@ -28,11 +28,12 @@ struct Place {
 /// What light paths bring to a place that camera paths find seldom: sums over them.
 struct Arrivals {
   double light = 0, lightSquared = 0;  // of c, and of c^2
+  double lost = 0;                     // of c where p is zero
   double byPaths = 0;                  // of c^2 / p
   double byBoth = 0;                   // of c^2 / (p + eta)
 
   Arrivals& operator+=(const Arrivals& a) {
-    light += a.light, lightSquared += a.lightSquared, byPaths += a.byPaths, byBoth += a.byBoth;
+    light += a.light, lightSquared += a.lightSquared, lost += a.lost, byPaths += a.byPaths, byBoth += a.byBoth;
     return *this;
   }
 };
@@ -175,6 +176,7 @@ void Arrive(const std::vector<Place>& places, const PlaceMap& map, const LightVe
     Arrivals& at = (*arrivals)[index];
     at.light += c;
     at.lightSquared += c * c;
+    if (density == 0) at.lost += c;
     at.byPaths += density > 0 ? c * c / density : std::numeric_limits<double>::infinity();
     at.byBoth += c * c / (density + lightPaths * place.mergeArea);
   });
@@ -226,15 +228,18 @@ RareLight FindRareLight(const Scene& scene, const IntegratorOptions& options, ui
   const std::vector<Arrivals> arrivals = ShootLight(scene, options, seed, places, map, kDark * mean);
 
   std::vector<double> light(places.size());
-  double rareMean = 0;
+  double rareMean = 0, lostMean = 0;
   for (size_t i = 0; i < places.size(); ++i) {
-    light[i] = arrivals[i].light / (kRareLightPaths * kPiD * Sqr(static_cast<double>(places[i].reach)));
-    if (!places[i].bsdf) light[i] = 0;
+    if (!places[i].bsdf) continue;
+    const double perRadiance = kRareLightPaths * kPiD * Sqr(static_cast<double>(places[i].reach));
+    light[i] = arrivals[i].light / perRadiance;
     rareMean += light[i] / count;
+    lostMean += arrivals[i].lost / perRadiance / count;
   }
   RareLight result;
   if (!(mean + rareMean > 0)) return result;
   result.share = rareMean / (mean + rareMean);
+  result.lostShare = lostMean / (mean + rareMean);
   for (size_t i = 0; i < places.size(); ++i) {
     const double scale = 1 / (Sqr(places[i].radiance + light[i]) + Sqr(kDark * (mean + rareMean)));
     result.noise += places[i].variance * scale / count;

@@ -6,7 +6,7 @@
 // share c of a place's radiance, at the density p over that of a photon there, would bring a camera path c / p when it
 // is found: far more than the place's radiance where it is found seldom. Its second moment, c^2 / p, is the noise that
 // it makes; with photons gathered too it is c^2 / (p + eta). So the noise of paths is known of light that none of them
-// has found.
+// has found; and where p is zero, none ever will.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@
 namespace dapple {
 
 struct RareLight {
-  double share = 0;  ///< of the light that the camera sees, what paths find seldom; in [0, 1]
+  double share = 0;      ///< of the light that the camera sees, what paths find seldom; in [0, 1]
+  double lostShare = 0;  ///< of the same, what no path could find: that of a point through smooth glass, say
   // Relative variances of a pixel by one camera path each, in the mean over the picture.
   double noise = 0;        ///< by path tracing, of all light that paths find well
   double rareNoise = 0;    ///< by path tracing, of the rest

@@ -49,6 +49,16 @@ IntegratorChoice ChoosePath(std::string_view reason, const IntegratorOptions& op
 std::string Digits(double x) { return x < 9.95 ? fmt::format("{:.2g}", x) : fmt::format("{:.0f}", x); }
 std::string Percent(double share) { return share < 1e-4 ? "less than 0.01 %" : Digits(100 * share) + " %"; }
 
+/// Where photons do not pay by less noise, but by light that paths never find.
+std::string Finding(const RareLight& rare) {
+  if (rare.lostShare > 0 && rare.Gain() < kCostOfPhotons)
+    return fmt::format("by a pilot {} of the light seen comes in ways that no path finds", Percent(rare.lostShare));
+  return fmt::format(
+      "by a pilot {} of the light seen comes in ways that paths find seldom; photons lower the variance of a pass {} "
+      "times",
+      Percent(rare.share), Digits(rare.Gain()));
+}
+
 }  // namespace
 
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed) {
@@ -58,14 +68,12 @@ IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& o
   guided.cameraSamples.reset();  // the pilot follows paths of its own
   guided.guide = std::make_shared<const EmissionGuide>(GuideOf(scene, options, 0, seed));
   const RareLight rare = FindRareLight(scene, guided, seed);
-  const std::string finding = fmt::format(
-      "by a pilot {} of the light seen comes in ways that paths find seldom; photons lower the variance of a "
-      "pass {} times",
-      Percent(rare.share), Digits(rare.Gain()));
+  const std::string finding = Finding(rare);
   const int64_t withGuide = kRareLightPaths + guided.guide->PilotPhotons();
   if (rare.share == 0)
     return ChoosePath("a pilot of light paths met no light that paths find seldom", options, withGuide);
-  if (rare.Gain() < kCostOfPhotons) return ChoosePath(finding + ", less than they cost", options, withGuide);
+  if (rare.lostShare == 0 && rare.Gain() < kCostOfPhotons)
+    return ChoosePath(finding + ", less than they cost", options, withGuide);
   if (options.direct.technique != DirectTechnique::Mis)
     return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}, kRareLightPaths};
   return {"hybrid", finding, guided.guide, {}, kRareLightPaths};

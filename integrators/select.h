@@ -22,7 +22,8 @@ struct IntegratorChoice {
 };
 
 /// "path", with more camera paths in noisy places, where what the scene holds makes no light that paths find seldom;
-/// else a pilot (rare_light.h) tells whether photons are worth what they cost: then "hybrid". Where direct light shall
+/// else a pilot (rare_light.h) tells whether photons are worth what they cost, or find what paths never will: then
+/// "hybrid". Where direct light shall
 /// be found by one technique alone, "hybrid", which joins all, gives way to "sppm". Depends on scene, options and seed
 /// alone.
 IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& options, uint64_t seed);

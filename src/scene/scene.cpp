@@ -55,7 +55,7 @@ void AddLights(const std::vector<std::unique_ptr<Light>>& lights, const Vec3& ce
     const double share = LightShare(*light, center);
     facts->largestLightShare = std::max(facts->largestLightShare, share);
     const bool carriesPower = static_cast<double>(light->Power().Average()) >= 0.01 * totalPower;
-    if (carriesPower && share > 0) facts->smallestLightShare = std::min(facts->smallestLightShare, share);
+    if (carriesPower) facts->smallestLightShare = std::min(facts->smallestLightShare, share);
   }
 }
 

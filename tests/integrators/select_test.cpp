@@ -80,6 +80,28 @@ TEST(SelectIntegrator, PhotonsForNearlySmoothSurfacesToo) {
   EXPECT_EQ(Choose(Lamp(0.05) + kFloor + RoughGlass(0.5) + kBall).name, "path");
 }
 
+TEST(SelectIntegrator, PhotonsForLightThatNoPathFinds) {
+  // What the ball throws on the floor is little under the sky, and no path that ends at the point finds it.
+  const std::string dim = "LightSource \"point\" \"point from\" [1 1 4] \"rgb I\" [2 2 2] ";
+  const std::string ball = "Material \"glass\" Shape \"sphere\" \"float radius\" [0.2] ";
+  ExpectChoice(Choose(kSky + dim + kFloor + ball), "hybrid", "of the light seen comes in ways that no path finds");
+  ExpectChoice(Choose(kSky + kFloor + ball), "path", "");
+}
+
+TEST(SelectIntegrator, ASmallLampThatFacesAwayIsSmall) {
+  // One-sided, so that nothing of it shines on the middle of the scene: only a pilot can tell.
+  const std::string up =
+      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [900 900 900] Material \"matte\" \"rgb Kd\" [0 0 0] "
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [1 1 2  1.1 1 2  1 1.1 2] AttributeEnd ";
+  const std::string ceiling =
+      "Material \"matte\" \"rgb Kd\" [.5 .5 .5] Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
+      "\"point P\" [-3 -3 5  3 -3 5  3 3 5  -3 3 5] ";
+  const auto scene = SceneOf(up + kFloor + ceiling + RoughMetal(0.05) + kBall);
+  EXPECT_EQ(scene->Facts().largestLightShare, 0);
+  EXPECT_EQ(scene->Facts().smallestLightShare, 0);
+  EXPECT_EQ(SelectIntegrator(*scene, {}, 1).reason.find("only large lights"), std::string::npos);
+}
+
 TEST(SelectIntegrator, PathsForLargeLights) {
   EXPECT_EQ(Choose(kSky + kFloor + "Material \"glass\" " + kBall).name, "path");
   EXPECT_EQ(Choose(Lamp(2.5) + kFloor + "Material \"glass\" " + kBall).name, "path");
