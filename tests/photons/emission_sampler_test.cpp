@@ -86,7 +86,7 @@ TEST_P(Emission, DensityOfASampleIsWhatPdfSays) {
   for (int i = 0; i < kSamples; ++i) {
     const auto photon = emission_.Sample(Random(i, kSamples));
     ASSERT_TRUE(photon);
-    const EmissionPdf pdf = emission_.Pdf(photon->light, photon->le.ray, photon->le.n);
+    const EmissionPdf pdf = emission_.Pdf(photon->light, photon->le.ray, photon->le.From());
     EXPECT_DOUBLE_EQ(pdf.light, photon->pdfLight);
     const double sampled = photon->le.pdfPos * photon->le.pdfDir * photon->bend;
     // A guide's cell is found from the ray in float: at the border of two cells it may be the neighbour.
@@ -103,7 +103,7 @@ TEST_P(Emission, InverseLeadsBackToTheRay) {
   for (int i = 0; i < kSamples; ++i) {
     const auto photon = emission_.Sample(Random(i, kSamples));
     ASSERT_TRUE(photon);
-    const LeRandom u = emission_.Inverse(photon->light, photon->le.ray, photon->le.n);
+    const LeRandom u = emission_.Inverse(photon->light, photon->le.ray, photon->le.From());
     const auto again = emission_.Sample(u);
     ASSERT_TRUE(again);
     EXPECT_EQ(again->light, photon->light);
