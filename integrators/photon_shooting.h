@@ -80,10 +80,29 @@ struct ShotPhotons {
     photons.push_back(photon);
   }
 
+  /// Adds what comes behind, of a pass with so many light paths.
+  void Append(const ShotPhotons& next, int64_t paths) {
+    stats += next.stats;
+    const size_t count = photons.size() + next.photons.size();
+    if (count > photons.capacity()) {
+      // As many as the paths so far make likely, and a tenth: room that is not filled takes no memory.
+      const double likely =
+          1.1 * static_cast<double>(count) * static_cast<double>(paths) / static_cast<double>(stats.photonsEmitted);
+      const size_t room = std::max(count + count / 2, static_cast<size_t>(likely));
+      positions.reserve(room);
+      photons.reserve(room);
+    }
+    positions.insert(positions.end(), next.positions.begin(), next.positions.end());
+    photons.insert(photons.end(), next.photons.begin(), next.photons.end());
+  }
+
   /// Moves those photons out for which `isWanted(const Photon&)`; both parts keep their order.
   template <typename Predicate>
   ShotPhotons Extract(Predicate&& isWanted) {
     ShotPhotons wanted;
+    const auto count = static_cast<size_t>(std::count_if(photons.begin(), photons.end(), isWanted));
+    wanted.positions.reserve(count);
+    wanted.photons.reserve(count);
     size_t kept = 0;
     for (size_t i = 0; i < photons.size(); ++i) {
       if (isWanted(photons[i])) {
@@ -104,23 +123,14 @@ struct ShotPhotons {
 template <typename Photon, typename Walk>
 ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass, Walk&& walk) {
   if (!plan.isNeeded) return {};
-  auto chunks = ForEachLightPath<ShotPhotons<Photon>>(
-      plan.emission, seed, pass, plan.paths, [&](const EmissionSample& emitted, const Sampler& sampler, auto& chunk) {
-        ++chunk.stats.photonsEmitted;
-        walk(emitted, sampler, chunk);
-      });
   ShotPhotons<Photon> all;
-  size_t count = 0;
-  for (const auto& chunk : chunks) count += chunk.photons.size();
-  all.positions.reserve(count);
-  all.photons.reserve(count);
-  for (auto& chunk : chunks) {
-    all.positions.insert(all.positions.end(), chunk.positions.begin(), chunk.positions.end());
-    all.photons.insert(all.photons.end(), chunk.photons.begin(), chunk.photons.end());
-    all.stats += chunk.stats;
-    chunk = {};
-  }
-  all.stats.photonsStored += static_cast<int64_t>(count);
+  const auto trace = [&](const EmissionSample& emitted, const Sampler& sampler, ShotPhotons<Photon>& chunk) {
+    ++chunk.stats.photonsEmitted;
+    walk(emitted, sampler, chunk);
+  };
+  const auto take = [&](const ShotPhotons<Photon>& chunk) { all.Append(chunk, plan.paths); };
+  ForEachLightPath<ShotPhotons<Photon>>(plan.emission, seed, pass, plan.paths, trace, take);
+  all.stats.photonsStored += static_cast<int64_t>(all.photons.size());
   return all;
 }
 

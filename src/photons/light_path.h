@@ -1,6 +1,7 @@
 // The photon tracer: one light path, from its emission to its last scattering, handed vertex by vertex to a visitor.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -103,20 +104,35 @@ LightPathEnd TraceLightPath(const Scene& scene, const EmissionSample& emitted, S
 }
 
 /// Begins `paths` light paths of a pass and calls `walk(const EmissionSample&, const Sampler&, Chunk&)` for each that
-/// leaves a light. Paths are cut into chunks of 4,096, whatever the number of threads, which run in parallel, each with
-/// a `Chunk` of its own. Returns the chunks in the order of the paths.
+/// leaves a light. Paths are cut into chunks of 2,048, whatever the number of threads, which run in parallel, each with
+/// a `Chunk` of its own. Calls `take(Chunk&&)` with each in the order of the paths, so that few of them are held at a
+/// time.
+template <typename Chunk, typename Walk, typename Take>
+void ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, int64_t paths, Walk&& walk,
+                      Take&& take) {
+  constexpr int64_t kChunk = 2048;
+  const int64_t pathsAtATime = kChunk * std::max(16, 8 * ThreadCount());
+  for (int64_t first = 0; first < paths; first += pathsAtATime) {
+    const int64_t count = std::min(pathsAtATime, paths - first);
+    std::vector<Chunk> chunks(static_cast<size_t>((count + kChunk - 1) / kChunk));
+    ParallelForChunks(count, kChunk, [&](int64_t begin, int64_t end) {
+      Chunk& chunk = chunks[static_cast<size_t>(begin / kChunk)];
+      for (int64_t path = first + begin; path < first + end; ++path) {
+        Sampler sampler = Sampler::ForLightPath(seed, path, pass, paths);
+        if (const std::optional<EmissionSample> emitted = EmitPhoton(emission, sampler)) walk(*emitted, sampler, chunk);
+      }
+    });
+    for (Chunk& chunk : chunks) take(std::exchange(chunk, {}));
+  }
+}
+
+/// The same; returns the chunks in the order of the paths.
 template <typename Chunk, typename Walk>
 std::vector<Chunk> ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, int64_t paths,
                                     Walk&& walk) {
-  constexpr int64_t kChunk = 4096;
-  std::vector<Chunk> chunks(static_cast<size_t>((paths + kChunk - 1) / kChunk));
-  ParallelForChunks(paths, kChunk, [&](int64_t begin, int64_t end) {
-    Chunk& chunk = chunks[static_cast<size_t>(begin / kChunk)];
-    for (int64_t path = begin; path < end; ++path) {
-      Sampler sampler = Sampler::ForLightPath(seed, path, pass, paths);
-      if (const std::optional<EmissionSample> emitted = EmitPhoton(emission, sampler)) walk(*emitted, sampler, chunk);
-    }
-  });
+  std::vector<Chunk> chunks;
+  ForEachLightPath<Chunk>(emission, seed, pass, paths, std::forward<Walk>(walk),
+                          [&](Chunk&& chunk) { chunks.push_back(std::move(chunk)); });
   return chunks;
 }
 

@@ -2,7 +2,6 @@
 // figures are exact where this runs alone, as ctest has it; memory that earlier tests left to the allocator makes them
 // smaller.
 #include <array>
-#include <fstream>
 #include <random>
 #include <string>
 
@@ -10,26 +9,14 @@
 #include <malloc.h>
 
 #include "src/photons/photon_map.h"
+#include "tests/support/process_memory.h"
 #include "tests/support/sanitizers.h"
 
 namespace dapple {
 namespace {
 
-/// A figure of the process, in bytes: VmRSS (now) or VmHWM (the peak).
-int64_t ProcessBytes(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  std::string word;
-  int64_t kilobytes = 0;
-  while (status >> word)
-    if (word == key + ":" && status >> kilobytes) return kilobytes * 1024;
-  return -1;
-}
-
-/// The peak starts anew from what is in use; false where the system does not allow it.
-bool ForgetPeak() {
-  std::ofstream("/proc/self/clear_refs") << "5" << std::flush;
-  return ProcessBytes("VmHWM") >= 0 && ProcessBytes("VmHWM") <= ProcessBytes("VmRSS") + (1 << 20);
-}
+using testing_support::ForgetPeak;
+using testing_support::ProcessBytes;
 
 TEST(PhotonMemory, AMillionPhotonsTake64MegabytesAtMost) {
   if (testing_support::kIsSanitized) GTEST_SKIP() << "the sanitizer has memory of its own";
