@@ -1,7 +1,7 @@
 #include "src/image/atomic_file.h"
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -9,7 +9,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "src/base/error.h"
@@ -27,14 +28,13 @@ namespace fs = std::filesystem;
 // An open file that is closed, and removed if it is a temporary, unless all went well.
 class OutputFile {
  public:
-  OutputFile(fs::path path, int flags, bool removeOnFailure, const std::string& shownPath)
-      : path_(std::move(path)), shownPath_(shownPath), descriptor_(::open(path_.c_str(), flags, 0666)) {
+  OutputFile(int descriptor, fs::path path, bool removeOnFailure, const std::string& shownPath)
+      : path_(std::move(path)), shownPath_(shownPath), descriptor_(descriptor), removeOnFailure_(removeOnFailure) {
     if (descriptor_ < 0) Fail(shownPath_, "cannot write the file", errno);
-    removeOnFailure_ = removeOnFailure;
   }
   ~OutputFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
     if (removeOnFailure_) ::unlink(path_.c_str());
+    if (descriptor_ >= 0) ::close(descriptor_);
   }
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -63,56 +63,72 @@ class OutputFile {
   fs::path path_;
   const std::string& shownPath_;
   int descriptor_;
-  bool removeOnFailure_ = false;
+  bool removeOnFailure_;
 };
 
 fs::path FolderOf(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
-// A name in the target's folder that no other process and no file there has.
-fs::path TemporaryName(const fs::path& target) {
-  for (int i = 0;; ++i) {
-    fs::path name = target.parent_path() / fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), i);
-    std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(name, ignored))) return name;
-  }
+// Whether a file in the target's folder has the name of one of its temporaries.
+bool IsTemporaryName(const std::string& name, const fs::path& target) {
+  const std::string begin = fmt::format(".{}.", target.filename().string()), end = ".tmp";
+  return name.starts_with(begin) && name.ends_with(end) &&
+         name.find_first_not_of("0123456789.", begin.size()) == name.size() - end.size() + 1;
 }
 
-// The process that a temporary file for `target` belongs to, by its name; 0 where it is none.
-pid_t OwnerOf(const fs::path& temporary, const fs::path& target) {
-  const std::string name = temporary.filename().string(), beginning = fmt::format(".{}.", target.filename().string());
-  if (!name.starts_with(beginning) || !name.ends_with(".tmp")) return 0;
-  pid_t owner = 0;
-  std::from_chars(name.data() + beginning.size(), name.data() + name.size(), owner);
-  return owner;
-}
+/// Held by who writes a temporary file until it is renamed or removed, or the process ends however it ends: so it tells
+/// on all machines and in all containers that share the folder which temporaries are nobody's.
+bool Lock(int descriptor) { return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0; }
 
-// Removes the temporary files for `target` that processes of this machine left behind which were killed while they
-// wrote.
+// Removes the temporary files for `target` that were left behind by processes that were killed while they wrote.
 void RemoveStaleTemporaries(const fs::path& target) {
   std::error_code ignored;
-  std::vector<fs::path> stale;
-  for (const auto& entry : fs::directory_iterator(FolderOf(target), ignored)) {
-    const pid_t owner = OwnerOf(entry.path(), target);
-    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) stale.push_back(entry.path());
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(FolderOf(target), ignored))
+    if (IsTemporaryName(entry.path().filename().string(), target)) found.push_back(entry.path());
+  for (const fs::path& file : found) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (descriptor < 0) continue;
+    if (Lock(descriptor)) ::unlink(file.c_str());
+    ::close(descriptor);
   }
-  for (const fs::path& file : stale) fs::remove(file, ignored);
+}
+
+// A new file in the target's folder, locked; -1 and errno where there can be none.
+int OpenTemporary(const fs::path& target, fs::path* name) {
+  for (int i = 0;; ++i) {
+    *name = target.parent_path() / fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), i);
+    const int descriptor = ::open(name->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno == EEXIST) continue;
+    if (descriptor < 0) return -1;
+    // Another process may take it for stale before the lock is held. Where there are no locks nobody takes it for
+    // stale.
+    struct stat status;
+    if ((Lock(descriptor) || errno != EWOULDBLOCK) && ::fstat(descriptor, &status) == 0 && status.st_nlink > 0)
+      return descriptor;
+    ::close(descriptor);
+  }
 }
 
 OutputFile MakeTemporary(const fs::path& target, const std::string& shownPath) {
   RemoveStaleTemporaries(target);
-  return OutputFile(TemporaryName(target), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, /*removeOnFailure=*/true,
-                    shownPath);
+  fs::path name;
+  const int descriptor = OpenTemporary(target, &name);
+  return OutputFile(descriptor, std::move(name), /*removeOnFailure=*/true, shownPath);
 }
 
 /// A device, a pipe: what can be written to, and not replaced.
 bool IsDevice(const fs::file_status& status) { return fs::exists(status) && !fs::is_regular_file(status); }
 
-/// Where links lead.
-fs::path TargetOf(const std::string& path, const fs::file_status& status) {
-  if (!fs::exists(status)) return path;
+/// Where links lead, whether something is there or not.
+fs::path TargetOf(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  fs::path target = path;
   std::error_code failure;
-  const fs::path target = fs::canonical(path, failure);
-  if (failure) Fail(path, "cannot write the file", failure.value());
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, failure)); ++links) {
+    if (links == kMostLinks) Fail(path, "cannot write the file", ELOOP);
+    target = target.parent_path() / fs::read_symlink(target, failure);
+    if (failure) Fail(path, "cannot write the file", failure.value());
+  }
   return target;
 }
 
@@ -133,15 +149,14 @@ void WriteFileAtomically(const std::string& path, std::initializer_list<std::str
   const fs::file_status status = fs::status(path, failure);
   if (fs::is_directory(status)) Fail(path, "cannot write the file", EISDIR);
   if (IsDevice(status)) {
-    OutputFile file(path, O_WRONLY | O_CLOEXEC, /*removeOnFailure=*/false, path);
+    OutputFile file(::open(path.c_str(), O_WRONLY | O_CLOEXEC), path, /*removeOnFailure=*/false, path);
     for (const std::string_view piece : pieces) file.Write(piece);
     return file.Close();
   }
-  const fs::path target = TargetOf(path, status);
+  const fs::path target = TargetOf(path);
   OutputFile file = MakeTemporary(target, path);
   for (const std::string_view piece : pieces) file.Write(piece);
   file.Flush();
-  file.Close();
   file.RenameTo(target);
   FlushFolder(target);
 }
@@ -150,7 +165,7 @@ void CheckWritable(const std::string& path) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (fs::is_directory(status)) Fail(path, "cannot write the file", EISDIR);
-  if (!IsDevice(status)) MakeTemporary(TargetOf(path, status), path);
+  if (!IsDevice(status)) MakeTemporary(TargetOf(path), path);
 }
 
 }  // namespace dapple
