@@ -1,5 +1,9 @@
 #include "src/geometry/accelerator.h"
 
+#include <array>
+#include <bit>
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "src/base/error.h"
@@ -210,6 +214,33 @@ TEST(Accelerator, AnswersAreTheSameForAnyNumberOfThreads) {
     winners.push_back(primitives);
   }
   for (size_t i = 1; i < winners.size(); ++i) EXPECT_EQ(winners[0], winners[i]);
+}
+
+// As above, of large triangles each of which overlaps most others, as a builder that cuts triangles would cut many
+// times. The scene is built inside a loop of so many threads, so that so many build it.
+TEST(Accelerator, OverlappingTwinsAreFoundTheSameForAnyNumberOfThreads) {
+  constexpr int kTriangles = 20000, kRays = 100000, kChunk = 500;
+  const TriangleMesh soup = Soup(kTriangles, 0.7, 9), twins = soup;
+  TestRandom random(10);
+  std::vector<Ray> rays;
+  for (int i = 0; i < kRays; ++i) rays.push_back(RandomRay(&random));
+  const auto findAll = [&](int threads) {
+    const ThreadLimit limit(threads);
+    std::unique_ptr<Accelerator> accelerator;
+    ParallelFor(1, [&](int64_t) {
+      accelerator = std::make_unique<Accelerator>(std::vector<GeometryEntry>{{&soup}, {&twins}},
+                                                  std::vector<GeometryGroup>{}, std::vector<GeometryInstance>{});
+    });
+    std::vector<std::array<int, 3>> found(kRays);
+    ParallelForChunks(kRays, kChunk, [&](int64_t begin, int64_t end) {
+      for (int64_t i = begin; i < end; ++i)
+        if (const auto hit = accelerator->Intersect(rays[i]))
+          found[i] = {hit->shape, hit->primitive, std::bit_cast<int>(hit->t)};
+    });
+    return found;
+  };
+  const auto one = findAll(1);
+  for (const int threads : {2, 3, 16}) EXPECT_TRUE(findAll(threads) == one) << threads;
 }
 
 TEST(Accelerator, BoundsAndMemoryAreThoseOfTheScene) {
