@@ -1,8 +1,11 @@
 #include "src/photons/photon_forest.h"
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
+
+#include <fmt/format.h>
+
+#include "src/base/error.h"
 
 namespace dapple {
 
@@ -21,7 +24,9 @@ Bounds3 BoundsOf(std::span<const Vec3> points) {
 PhotonForest::PhotonForest(std::vector<Vec3> positions, const Follower& follow, const ForestShape& shape)
     : positions_(std::move(positions)) {
   if (positions_.empty()) return;
-  assert(positions_.size() < UINT32_MAX);
+  if (positions_.size() >= UINT32_MAX)
+    throw Error(fmt::format("a pass left {} photons, expected fewer than {}: ask for fewer photons", positions_.size(),
+                            UINT32_MAX));
   int levels = 0;
   while ((positions_.size() >> levels) > shape.bucketSize) ++levels;
   SplitIntoBuckets(levels, follow);

@@ -29,6 +29,7 @@ class PhotonForest {
   using Follower = std::function<void(size_t first, std::span<const uint32_t> order)>;
 
   PhotonForest() = default;
+  /// Throws `Error` for 2^32 - 1 points or more: they are numbered in 32 bits.
   explicit PhotonForest(std::vector<Vec3> positions, const Follower& follow = {}, const ForestShape& shape = {});
 
   size_t Size() const { return positions_.size(); }
