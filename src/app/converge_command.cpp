@@ -1,6 +1,6 @@
 // `dapple converge`: algorithms compared by error against time, as a page to look at and as data.
+#include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -25,6 +25,7 @@
 #include "src/image/false_color.h"
 #include "src/image/image_io.h"
 #include "src/render/json_text.h"
+#include "src/render/output.h"
 #include "src/render/version.h"
 
 namespace dapple {
@@ -83,31 +84,43 @@ Json RampForPage() {
   return colors;
 }
 
-void WriteReport(const ConvergeOptions& options, const std::vector<Study>& studies) {
-  std::vector<SceneConvergence> scenes;
-  for (const Study& study : studies) scenes.push_back(study.convergence);
-  Json data = ConvergenceToJson(scenes, About());
-  const auto path = [&](const std::string& name) { return (std::filesystem::path(options.folder) / name).string(); };
-  WriteFileAtomically(path("data.csv"), ConvergenceToCsv(scenes));
-  WriteFileAtomically(path("data.json"), DumpJson(data, 1) + "\n");
-  for (size_t i = 0; i < studies.size(); ++i) data["scenes"][i]["pictures"] = ToJson(studies[i].pictures);
-  data["ramp"] = RampForPage();
-  WriteFileAtomically(path("index.html"), ReportPage(data));
-  if (!options.isQuiet) fmt::print("{}", ConvergenceToMarkdown(scenes, 0));
-  fmt::print("{}\n", path("index.html"));
+std::string PathOf(const ConvergeOptions& options, const std::string& name) {
+  return (std::filesystem::path(options.folder) / name).string();
 }
 
 std::string ReferencePath(const ConvergeOptions& options, const std::string& sceneName) {
-  return (std::filesystem::path(options.folder) / fmt::format("reference-{}.exr", sceneName)).string();
+  return PathOf(options, fmt::format("reference-{}.exr", sceneName));
 }
 
-/// The references that are rendered, one a scene, by the scene's name alone.
-std::vector<NamedFile> ReferencesWrittenBy(const ConvergeOptions& options) {
+/// The report and the references that are rendered, one a scene, by the scene's name alone.
+std::vector<NamedFile> WrittenBy(const ConvergeOptions& options) {
   std::vector<NamedFile> files;
+  for (const char* name : {"data.csv", "data.json", "index.html"}) files.push_back({name, PathOf(options, name)});
   if (!options.referenceFile.empty()) return files;
   for (const std::string& scene : options.scenes)
     files.push_back({fmt::format("the reference of {}", scene), ReferencePath(options, SceneName(scene))});
   return files;
+}
+
+/// Where a file of it cannot be written the others are; false then, with a word.
+bool WriteReport(const ConvergeOptions& options, const std::vector<Study>& studies) {
+  std::vector<SceneConvergence> scenes;
+  for (const Study& study : studies) scenes.push_back(study.convergence);
+  Json data = ConvergenceToJson(scenes, About());
+  const auto write = [&](const std::string& name, const auto& makeText) {
+    const std::string path = PathOf(options, name);
+    return TryToWrite(path, [&] { WriteFileAtomically(path, makeText()); });
+  };
+  bool isWritten = write("data.csv", [&] { return ConvergenceToCsv(scenes); });
+  isWritten &= write("data.json", [&] { return DumpJson(data, 1) + "\n"; });
+  const bool hasPage = write("index.html", [&] {
+    for (size_t i = 0; i < studies.size(); ++i) data["scenes"][i]["pictures"] = ToJson(studies[i].pictures);
+    data["ramp"] = RampForPage();
+    return ReportPage(data);
+  });
+  if (!options.isQuiet) Print(ConvergenceToMarkdown(scenes, 0));
+  if (hasPage) Print(PathOf(options, "index.html") + "\n");
+  return isWritten && hasPage;
 }
 
 void TellDuration(const ConvergeOptions& options) {
@@ -120,32 +133,52 @@ void TellDuration(const ConvergeOptions& options) {
 
 /// One that cannot be read must not cost the studies of those before it. A single one is read before it is rendered
 /// anyway.
-void CheckScenes(ConvergeOptions options) {
+void CheckScenes(ConvergeOptions options, const std::atomic<bool>& stop) {
   for (const std::string& scene : options.scenes) {
+    if (stop) return;
     options.scene.scene = scene;
     CheckScene(options);
   }
 }
 
+/// Adds the study of the scene, with all of it that is complete. False, with a word, where something failed.
+bool AddStudy(const ConvergeOptions& options, const std::atomic<bool>& stop, std::vector<Study>* studies) {
+  try {
+    Study study = RunStudy(options, options.isQuiet, stop);
+    const Image reference = study.pictures.reference;
+    const std::string failure = study.failure;
+    if (study.HasRuns()) studies->push_back(std::move(study));
+    if (!failure.empty()) Tell(failure);
+    if (options.referenceFile.empty()) WriteExr(ReferencePath(options, SceneName(options.scene.scene)), reference);
+    return failure.empty();
+  } catch (const std::exception& error) {
+    Tell(ErrorLine(error));
+    return false;
+  }
+}
+
 int RunConverge(ConvergeOptions options) {
+  const StopSignals signals;
   MakeFolder(options.folder);
+  options.written = WrittenBy(options);
+  for (const NamedFile& file : options.written) CheckFolder(file.path);
   const ThreadLimit threads(options.scene.threads);
   if (options.referenceSeconds == 0) options.referenceSeconds = 10 * *options.scene.seconds;
   if (!options.isQuiet) TellDuration(options);
-  const StopSignals signals;
-  if (options.scenes.size() > 1) CheckScenes(options);
+  if (options.scenes.size() > 1) CheckScenes(options, signals.Flag());
   std::vector<Study> studies;
-  for (const std::string& scene : options.scenes) {
-    if (signals.Flag()) break;
-    options.scene.scene = scene;
-    Study study = RunStudy(options, options.isQuiet, signals.Flag());
-    if (options.referenceFile.empty())
-      WriteExr(ReferencePath(options, study.convergence.name), study.pictures.reference);
-    studies.push_back(std::move(study));
+  bool isWhole = true;
+  for (size_t i = 0; i < options.scenes.size() && isWhole && !signals.Flag(); ++i) {
+    options.scene.scene = options.scenes[i];
+    isWhole = AddStudy(options, signals.Flag(), &studies);
   }
-  if (studies.empty()) throw Error("stopped before the first scene; no report is written");
-  WriteReport(options, studies);
-  return signals.Flag() ? 128 + signals.Signal() : kExitSuccess;
+  if (studies.empty()) {
+    if (signals.Flag()) Tell("stopped before the first run was complete; no report is written");
+    return kExitFailure;
+  }
+  if (!WriteReport(options, studies)) return kExitFailure;
+  if (signals.Flag()) return 128 + signals.Signal();
+  return isWhole ? kExitSuccess : kExitFailure;
 }
 
 void AddReferenceGroup(CLI::App* command, ConvergeOptions* options) {
@@ -216,7 +249,9 @@ void AddConvergeCommand(CLI::App& program, Action* action) {
       throw CLI::ValidationError("--reference", "it is of one scene, and several were given");
     RequireDirect(options->scene, options->integrators);
     RequireDirect(options->scene, {options->referenceIntegrator});
-    RequireNoClash(ReferencesWrittenBy(*options), {});
+    std::vector<NamedFile> read = NamedFiles("the scene", options->scenes);
+    if (!options->referenceFile.empty()) read.push_back({"--reference", options->referenceFile});
+    RequireNoClash(WrittenBy(*options), read);
     *action = [options] { return RunConverge(*options); };
   });
 }

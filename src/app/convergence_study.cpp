@@ -61,16 +61,16 @@ class StudyRunner {
     convergence.file = options_.scene.scene;
     convergence.seconds = *options_.scene.seconds;
     AddContenders();
-    ErrorMeter meter(MakeReference(scene));
+    const ErrorMeter meter(MakeReference(scene));
     convergence.width = meter.Reference().Width();
     convergence.height = meter.Reference().Height();
     study_.pictures.reference = meter.Reference();
     study_.pictures.contenders.resize(convergence.contenders.size());
-    const int firstSeed = options_.scene.seed.value_or(scene.Settings().seed.value_or(0));
-    for (int k = 0; k < options_.seeds; ++k) {
-      // Behind the greatest seed comes the least.
-      const int seed = static_cast<int>(static_cast<uint32_t>(firstSeed) + static_cast<uint32_t>(k));
-      for (size_t i = 0; i < convergence.contenders.size() && !stop_; ++i) RunContender(i, seed, k == 0, meter);
+    firstSeed_ = options_.scene.seed.value_or(scene.Settings().seed.value_or(0));
+    try {
+      RunContenders(meter);
+    } catch (const std::exception& error) {
+      study_.failure = ErrorLine(error);
     }
     return std::move(study_);
   }
@@ -95,7 +95,11 @@ class StudyRunner {
       SceneOptions options = options_.scene;
       options.integrator = integrator;
       options.strategy = strategy;
-      scene = Load(options, diagnostics_).scene;
+      LoadedScene loaded = Load(options, diagnostics_);
+      const std::vector<NamedFile> read = NamedFiles("what the scene is read from", loaded.files);
+      if (const auto clash = FindClash(options_.written, read); !clash.empty())
+        throw Error(FileLocation(options.scene), clash);
+      scene = std::move(loaded.scene);
       RequireFilm(scene->Settings(), {}, false, MachineMemoryBytes());
     }
     return *scene;
@@ -169,7 +173,8 @@ class StudyRunner {
     hooks.stop = &stop_;
     const RenderResult result =
         Render(scene, SeedFrom(kReferenceSeed), *plan.integrator, film, budget, hooks, plan.seconds);
-    if (film.PassCount() == 0) throw Error("stopped before the reference had a pass; no report is written");
+    if (film.PassCount() == 0)
+      throw Error(fmt::format("stopped before the reference of {} had a pass", options_.scene.scene));
     ReferenceInfo& info = study_.convergence.reference;
     info.source = fmt::format("{}, {} in {}", plan.choice.name, FormatNumberOf(film.PassCount(), "pass", "passes"),
                               FormatDuration(result.seconds));
@@ -177,6 +182,14 @@ class StudyRunner {
     info.errorSource = info.errors ? "noise, estimated from its half-images; bias is not seen"
                                    : "not known: it has one pass only, and so no half-images";
     return ToPicture(film, scene.Settings().exposure);
+  }
+
+  void RunContenders(const ErrorMeter& meter) {
+    for (int k = 0; k < options_.seeds; ++k) {
+      // Behind the greatest seed comes the least.
+      const int seed = static_cast<int>(static_cast<uint32_t>(firstSeed_) + static_cast<uint32_t>(k));
+      for (size_t i = 0; i < study_.convergence.contenders.size() && !stop_; ++i) RunContender(i, seed, k == 0, meter);
+    }
   }
 
   void RunContender(size_t index, int seed, bool keepsPictures, const ErrorMeter& meter) {
@@ -220,10 +233,15 @@ class StudyRunner {
   /// For "auto" or not, for algorithms that draw toward lights or not, by strategy.
   std::map<std::tuple<bool, bool, std::string>, std::unique_ptr<Scene>> scenes_;
   std::vector<std::string> requested_;  ///< of each contender; "auto" too
+  int firstSeed_ = 0;
   Study study_;
 };
 
 }  // namespace
+
+bool Study::HasRuns() const {
+  return std::ranges::any_of(convergence.contenders, [](const Contender& c) { return !c.seeds.empty(); });
+}
 
 void CheckScene(const StudyOptions& options) {
   const std::atomic<bool> stop = false;

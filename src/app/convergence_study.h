@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "src/app/named_files.h"
 #include "src/app/scene_options.h"
 #include "src/render/convergence_data.h"
 
@@ -22,6 +23,7 @@ struct StudyOptions {
   double referenceSeconds = 0;
   std::optional<double> referenceError;  ///< relative MSE of the file
   int imageTimes = 5;                    ///< at how many times pictures are kept, each four times the one before
+  std::vector<NamedFile> written;        ///< by the command: none may be a file of the scene
 };
 
 /// A snapshot as a person looks at it: two PNG files.
@@ -41,6 +43,9 @@ struct StudyPictures {
 struct Study {
   SceneConvergence convergence;
   StudyPictures pictures;
+  std::string failure;  ///< a line of what ended it before all runs were complete; empty where nothing did
+
+  bool HasRuns() const;
 };
 
 /// Reads and builds the scene as each contender needs it, and lets it go: throws the `Error` that `RunStudy` would
@@ -48,8 +53,8 @@ struct Study {
 void CheckScene(const StudyOptions& options);
 
 /// Runs go seed by seed through all contenders, so that a machine that gets slower is so for all. Tells what it does on
-/// the error stream unless `isQuiet`. Where `stop` becomes true, the run at hand is given up and the study ends with
-/// those before it. Throws `Error`.
+/// the error stream unless `isQuiet`. Where `stop` becomes true or a run fails, that is given up and the study ends
+/// with those before it. Throws `Error` for what goes wrong before the first of them.
 Study RunStudy(const StudyOptions& options, bool isQuiet, const std::atomic<bool>& stop);
 
 }  // namespace dapple

@@ -38,4 +38,17 @@ void Print(const std::string& text);
 /// What went wrong as the one line that is told of it; `place`: where, if the error does not say so itself.
 std::string ErrorLine(const std::exception& error, const FileLocation& place = {});
 
+/// Calls `write`, which makes the file `path`. False, with a word, where it fails: what else is to be written still can
+/// be.
+template <typename F>
+bool TryToWrite(const std::string& path, F write) {
+  try {
+    write();
+    return true;
+  } catch (const std::exception& error) {
+    Tell(ErrorLine(error, FileLocation(path)));
+    return false;
+  }
+}
+
 }  // namespace dapple

@@ -1,7 +1,10 @@
 // `dapple converge` from end to end, but for what a browser makes of the page.
 #include <cmath>
+#include <filesystem>
 #include <regex>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -97,6 +100,68 @@ TEST_F(Converge, ASignalEndsItWithTheRunsThatAreComplete) {
   ASSERT_GE(seeds.size(), 2u);
   for (const auto& run : seeds) EXPECT_EQ(run["snapshots"].back()["timeIndex"], 16);
   EXPECT_TRUE(Exists("out/index.html"));
+}
+
+std::vector<std::string> ScenesOf(const std::string& json) {
+  std::vector<std::string> names;
+  const auto report = nlohmann::json::parse(json);  // that outlives the loop
+  for (const auto& scene : report["scenes"]) names.push_back(scene["name"]);
+  return names;
+}
+
+// A pass of the second scene takes seconds and one has to end, so that its runs are far from complete.
+TEST_F(Converge, ASignalInALaterSceneKeepsTheStudiesBefore) {
+  WriteScene("tiny.pbrt");
+  Write("slow.pbrt",
+        "Camera \"perspective\" \"float fov\" 90\n"
+        "Film \"rgb\" \"integer xresolution\" 500 \"integer yresolution\" 500\nWorldBegin\n"
+        "LightSource \"point\" Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n"
+        "Shape \"sphere\" \"float radius\" 9\n");
+  const ProgramResult result = RunAndSignal(
+      "converge tiny.pbrt slow.pbrt --integrators path --reference-integrator path --time 0.02 --seeds 100 "
+      "--reference-time 0.05 -o out",
+      SIGTERM, "slow: reference, ");
+  EXPECT_EQ(result.exitCode, 128 + SIGTERM) << result.err;
+  EXPECT_EQ(ScenesOf(Read("out/data.json")), std::vector<std::string>{"tiny"});
+  EXPECT_TRUE(Exists("out/index.html") && Exists("out/data.csv"));
+}
+
+TEST_F(Converge, AFileThatCannotBeWrittenCostsNoStudyAndNoOtherFile) {
+  WriteScene("a.pbrt");
+  WriteScene("b.pbrt");
+  for (const std::string name : {"out/reference-b.exr", "out/data.csv"}) {
+    std::filesystem::remove_all(Path("out"));
+    std::filesystem::create_directory(Path("out"));
+    std::filesystem::create_symlink("/dev/full", Path(name));
+    const ProgramResult result =
+        Run("converge a.pbrt b.pbrt --integrators path --time 0.02 --seeds 1 --reference-time 0.05 -o out --quiet");
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_EQ(result.err, name + ": error: cannot write the file: No space left on device\n");
+    EXPECT_EQ(ScenesOf(Read("out/data.json")), (std::vector<std::string>{"a", "b"}));
+    EXPECT_TRUE(Exists("out/index.html"));
+  }
+}
+
+TEST_F(Converge, WhatCannotBeWrittenIsToldBeforeAnythingIsRendered) {
+  WriteScene("tiny.pbrt");
+  const std::string rest = " --integrators path --time 0.02 --seeds 1 -o out";
+  for (const std::string name : {"out/index.html", "out/data.json", "out/data.csv", "out/reference-tiny.exr"}) {
+    std::filesystem::create_directories(Path(name));
+    const ProgramResult result = Run("converge tiny.pbrt" + rest);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_EQ(result.err, name + ": error: expected the name of a file; this is a folder\n");
+    std::filesystem::remove(Path(name));
+  }
+  // Nor may it replace what a scene is read from.
+  Write("out/data.csv", Read("tiny.pbrt"));
+  Write("uses.pbrt", "Include \"out/data.csv\"\n");
+  const ProgramResult used = Run("converge uses.pbrt" + rest);
+  EXPECT_EQ(used.exitCode, 1);
+  EXPECT_TRUE(Contains(used.err, "uses.pbrt: error: what the scene is read from and data.csv are one file: "));
+  EXPECT_FALSE(Contains(used.err, "uses: ")) << "nothing was rendered";
+  WriteExr(Path("out/reference-tiny.exr"), Image::Rgb(24, 16));
+  EXPECT_EQ(Run("converge out/data.csv tiny.pbrt" + rest).exitCode, 2);
+  EXPECT_EQ(Read("out/data.csv"), Read("tiny.pbrt"));
 }
 
 // Else the studies of those before it would be lost.
