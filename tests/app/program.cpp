@@ -135,6 +135,17 @@ bool ProgramTest::RunAndKill(const std::string& arguments, double seconds) const
   return WIFSIGNALED(status);
 }
 
+bool ProgramTest::RunAndKillWhen(const std::string& arguments,
+                                 const std::function<bool(int process)>& isTheMoment) const {
+  const pid_t child = Start(arguments, [] {});
+  int status = 0;
+  while (!isTheMoment(child))
+    if (waitpid(child, &status, WNOHANG) == child) return false;
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status);
+}
+
 void ProgramTest::Write(const std::string& name, const std::string& content) const {
   std::ofstream(folder_ / name, std::ios::binary) << content;
 }

@@ -36,6 +36,8 @@ class ProgramTest : public testing::Test {
   ProgramResult RunAndSignal(const std::string& arguments, int signal, const std::string& awaited) const;
   /// Starts it and kills it (SIGKILL) after so many seconds; false where it had ended before.
   bool RunAndKill(const std::string& arguments, double seconds) const;
+  /// Kills it at the first moment that is found to be the one; false where it had ended before.
+  bool RunAndKillWhen(const std::string& arguments, const std::function<bool(int process)>& isTheMoment) const;
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
   bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
