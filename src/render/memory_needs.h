@@ -25,7 +25,8 @@ struct MemoryNeeds {
 /// its film alone takes more than the `available` bytes. `tracksBlur`: the film does, for the error.
 void RequireFilm(const RenderSettings& settings, const AovSet& aovs, bool tracksBlur, int64_t available);
 
-/// What a light path leaves of photons is counted on a few thousand paths. `tracksBlur` as above.
+/// What a light path leaves of photons is counted on a few thousand paths, those of each light and direction apart:
+/// where the most are left counts, since emission may be guided there. `tracksBlur` as above.
 MemoryNeeds EstimateMemory(const Scene& scene, const AovSet& aovs, const Integrator& integrator,
                            const IntegratorOptions& options, uint64_t seed, bool tracksBlur = false);
 
