@@ -8,7 +8,7 @@
 namespace dapple {
 
 /// Exit codes. A render that a signal ended early exits with 128 + the signal's number, its picture and its checkpoint
-/// written.
+/// written; where nothing was, because no pass was done yet or a second signal came, with failure.
 inline constexpr int kExitSuccess = 0;
 inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;

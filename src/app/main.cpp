@@ -20,7 +20,8 @@ namespace {
 constexpr const char* kFooter =
     "\n`dapple SCENE` is short for `dapple render SCENE`.\n"
     "Exit codes: 0 success, 1 failure (a line on the error stream says what), 2 wrong usage,\n"
-    "128 + N where signal N ended a render early; its picture and its checkpoint are written.";
+    "128 + N where signal N ended a render early, its picture and its checkpoint written (1 where\n"
+    "it came before the first pass was done: then nothing is).";
 
 /// The arguments, without the program's name, with "render" put in front where no subcommand is named.
 std::vector<std::string> Arguments(CLI::App& program, int argc, char** argv) {

@@ -64,7 +64,10 @@ bool WritesLayers(const RenderOptions& options) {
 /// All that is written under a name of its own; of snapshots see `FindClashOf`.
 std::vector<NamedFile> WrittenBy(const RenderOptions& options) {
   std::vector<NamedFile> files = NamedFiles("--output", options.outputs);
-  if (!options.outputs.empty()) files.push_back({"the checkpoint", Checkpoint::PathFor(options.outputs[0])});
+  if (!options.outputs.empty()) {
+    files.push_back({"the checkpoint", Checkpoint::PathFor(options.outputs[0])});
+    files.push_back({"the older checkpoint", Checkpoint::OlderPathFor(options.outputs[0])});
+  }
   if (!options.statistics.empty()) files.push_back({"--stats", options.statistics});
   return files;
 }
@@ -117,15 +120,15 @@ void CheckMemory(const RenderOptions& options, const Scene& scene, const RenderP
   RequireMemory(*options.memoryLimit, CurrentMemoryBytes(), needs);
 }
 
-/// Puts into the film what was rendered before.
-void Resume(const RenderOptions& options, const RenderPlan& plan, Checkpoint& checkpoint, Film* film) {
+/// What was rendered before; nothing where there is no checkpoint.
+std::optional<Film> Resume(const RenderOptions& options, const RenderPlan& plan, Checkpoint& checkpoint) {
   std::optional<Film> saved = checkpoint.Load(plan.budget);
   if (!options.isQuiet) {
     Tell(saved ? fmt::format("{}: going on after {}", checkpoint.Path(),
                              FormatNumberOf(saved->PassCount(), "pass", "passes"))
                : fmt::format("{}: not there yet; beginning with the first pass", checkpoint.Path()));
   }
-  if (saved) *film = std::move(*saved);
+  return saved;
 }
 
 /// What is done between passes: progress is shown, the state saved, pictures taken on the way. Where one of these
@@ -182,18 +185,6 @@ RenderResult RenderWithProgress(const RenderOptions& options, const Scene& scene
   return Render(scene, SeedFrom(plan.seed), *plan.integrator, film, plan.budget, hooks, plan.seconds);
 }
 
-/// Does what writes `path`. False, with a word, where it fails: what else is to be written still can be.
-template <typename F>
-bool IsDone(const std::string& path, F write) {
-  try {
-    write();
-    return true;
-  } catch (const std::exception& error) {
-    Tell(ErrorLine(error, FileLocation(path)));
-    return false;
-  }
-}
-
 RenderRecord MakeRecord(const RenderOptions& options, const RenderOrigin& origin, double seconds, const Film& film,
                         const std::optional<ErrorEstimate>& error) {
   RenderRecord record = origin.record;
@@ -232,7 +223,7 @@ Kept WriteResults(const RenderOptions& options, const RenderOrigin& origin, cons
   Kept kept;
   const auto save = [&] {
     kept.needsState = true;
-    kept.hasState = IsDone(checkpoint.Path(), [&] { checkpoint.Save(film, result.seconds); });
+    kept.hasState = TryToWrite(checkpoint.Path(), [&] { checkpoint.Save(film, result.seconds); });
   };
   if (options.checkpointSeconds || options.resumes || result.stopped) save();
   if (options.error) kept.error = EstimateError(film, origin.exposure);
@@ -251,13 +242,29 @@ void TellHowToGoOn(const Kept& kept, const RenderResult& result, const Film& fil
                    checkpoint.Path()));
 }
 
+/// Where a signal came before the first pass was done.
+int NothingWritten() {
+  Tell("stopped before the first pass was done; nothing is written");
+  return kExitFailure;
+}
+
+/// Where a pass fails: what it added already cannot be told from what was before, so only a checkpoint helps.
+int Fail(const std::exception& error, const Film& film, const Checkpoint& checkpoint) {
+  Tell(ErrorLine(error));
+  if (checkpoint.PassesSaved() > 0) {
+    Tell(fmt::format("{} holds {}; to go on with them, give the same command with --resume", checkpoint.Path(),
+                     FormatNumberOf(checkpoint.PassesSaved(), "pass", "passes")));
+  } else if (film.PassCount() > 0) {
+    Tell(fmt::format("nothing is kept of {}: no checkpoint was saved (see --checkpoint)",
+                     FormatNumberOf(film.PassCount(), "pass", "passes")));
+  }
+  return kExitFailure;
+}
+
 /// Writes all that was asked for and tells what was done; returns the exit code.
 int Finish(const RenderOptions& options, const RenderOrigin& origin, const RenderResult& result,
            const RenderNeeds& needs, const Film& film, int signal, Checkpoint& checkpoint) {
-  if (film.PassCount() == 0) {
-    Tell("stopped before the first pass; no picture is written");
-    return 128 + signal;
-  }
+  if (film.PassCount() == 0) return NothingWritten();
   const Kept kept = WriteResults(options, origin, result, film, checkpoint);
   WarnOfVariance(kept.outputs.paths, origin.aovs, film);
   WarnOfNonFinite(film);
@@ -266,7 +273,7 @@ int Finish(const RenderOptions& options, const RenderOrigin& origin, const Rende
   std::optional<ErrorEstimate> error = kept.error;
   if (!error && !(options.isQuiet && options.statistics.empty())) error = EstimateError(film, origin.exposure);
   const bool hasStatistics =
-      options.statistics.empty() || IsDone(options.statistics, [&] {
+      options.statistics.empty() || TryToWrite(options.statistics, [&] {
         WriteFileAtomically(options.statistics, StatisticsToJson(kept.record, result, needs, film, error));
       });
   if (!options.isQuiet) {
@@ -278,20 +285,26 @@ int Finish(const RenderOptions& options, const RenderOrigin& origin, const Rende
   return hasStatistics ? kExitSuccess : kExitFailure;
 }
 
-int RunRender(RenderOptions options) {
+/// What can be told before the scene is read.
+void CheckOutputs(const RenderOptions& options) {
   for (const std::string& output : options.outputs) CheckRenderOutput(output);
   if (!options.statistics.empty()) CheckFolder(options.statistics);
-  const ThreadLimit threads(options.threads);
-  Diagnostics diagnostics(Tell);
-  const LoadedScene loaded = Load(options, diagnostics);
-  const Scene& scene = *loaded.scene;
-  if (options.outputs.empty()) {
-    options.outputs.push_back(DefaultOutput(options, scene.Settings()));
-    CheckRenderOutput(options.outputs[0]);
+}
+
+/// What takes the scene to be known: names that it gives, files that it reads.
+void CheckFiles(RenderOptions* options, const LoadedScene& loaded) {
+  if (options->outputs.empty()) {
+    options->outputs.push_back(DefaultOutput(*options, loaded.scene->Settings()));
+    CheckRenderOutput(options->outputs[0]);
   }
-  if (options.checkpointSeconds || options.resumes) CheckFolder(Checkpoint::PathFor(options.outputs[0]));
-  if (const auto clash = FindClashOf(options, NamedFiles("what the scene is read from", loaded.files)); !clash.empty())
-    throw Error(FileLocation(options.scene), clash);
+  if (options->checkpointSeconds || options->resumes) CheckFolder(Checkpoint::PathFor(options->outputs[0]));
+  if (options->checkpointSeconds && !options->resumes) CheckFolder(Checkpoint::OlderPathFor(options->outputs[0]));
+  const std::vector<NamedFile> read = NamedFiles("what the scene is read from", loaded.files);
+  if (const auto clash = FindClashOf(*options, read); !clash.empty()) throw Error(FileLocation(options->scene), clash);
+}
+
+/// The plan, of which nothing more stands in the way of the render.
+RenderPlan CheckedPlan(const RenderOptions& options, const Scene& scene, Diagnostics& diagnostics) {
   RenderPlan plan = MakePlan(scene, options, diagnostics);
   WarnOfUnused(options, {plan.choice.name}, diagnostics);
   RequireFilm(scene.Settings(), options.aovs, TracksBlur(options, plan), MachineMemoryBytes());
@@ -306,16 +319,43 @@ int RunRender(RenderOptions options) {
     diagnostics.Warn(FileLocation(options.scene), "none of the lights emits anything; the image will be black");
   }
   CheckMemory(options, scene, plan);
-  Film film = EmptyFilm(options, scene.Settings(), plan);
-  const RenderOrigin origin = MakeOrigin(options, loaded, plan, film);
-  Checkpoint checkpoint(Checkpoint::PathFor(options.outputs[0]), origin, options.checkpointSeconds);
+  return plan;
+}
+
+void TellSetAside(const std::string& older) {
+  Tell(fmt::format("warning: a checkpoint was there that this render does not go on from; it is now {}", older));
+}
+
+int RunRender(RenderOptions options) {
+  // What comes before the first pass cannot be interrupted, but it is the end where a signal came in it.
   const StopSignals signals;
+  CheckOutputs(options);
+  const ThreadLimit threads(options.threads);
+  Diagnostics diagnostics(Tell);
+  const LoadedScene loaded = Load(options, diagnostics);
+  const Scene& scene = *loaded.scene;
+  CheckFiles(&options, loaded);
+  if (signals.Flag()) return NothingWritten();
+  const RenderPlan plan = CheckedPlan(options, scene, diagnostics);
+  if (signals.Flag()) return NothingWritten();
+  std::optional<Film> film = EmptyFilm(options, scene.Settings(), plan);
+  const RenderOrigin origin = MakeOrigin(options, loaded, plan, *film);
+  Checkpoint checkpoint(options.outputs[0], origin, options.checkpointSeconds, TellSetAside);
   if (!options.isQuiet) PrintStart(options, scene, plan);
-  if (options.resumes) Resume(options, plan, checkpoint, &film);
-  const RenderResult result = RenderWithProgress(options, scene, plan, origin, signals, checkpoint, film);
+  if (options.resumes) {
+    film.reset();  // the file takes as much memory
+    film = Resume(options, plan, checkpoint);
+    if (!film) film = EmptyFilm(options, scene.Settings(), plan);
+  }
+  RenderResult result;
+  try {
+    result = RenderWithProgress(options, scene, plan, origin, signals, checkpoint, *film);
+  } catch (const std::exception& error) {
+    return Fail(error, *film, checkpoint);
+  }
   RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
   needs.preparation.pilotPaths += plan.choice.pilotPaths;
-  return Finish(options, origin, result, needs, film, signals.Signal(), checkpoint);
+  return Finish(options, origin, result, needs, *film, signals.Signal(), checkpoint);
 }
 
 /// A snapshot is a picture, of outputs that are one.
@@ -375,8 +415,10 @@ void AddErrorOptions(CLI::App* command, RenderOptions* options) {
 void AddFilesGroup(CLI::App* command, RenderOptions* options) {
   const std::string group = "Files";
   command
-      ->add_option("--checkpoint", options->checkpointSeconds,
-                   "Save the state every so often, and in the end, beside the first output (OUTPUT.checkpoint)")
+      ->add_option(
+          "--checkpoint", options->checkpointSeconds,
+          "Save the state every so often, and in the end, beside the first output (OUTPUT.checkpoint); one that is "
+          "there, and that --resume did not go on from, becomes OUTPUT.checkpoint.old")
       ->check(CheckPositive)
       ->type_name("SECONDS")
       ->group(group);

@@ -1,10 +1,13 @@
 #include "src/app/signals.h"
 
 #include <array>
+#include <cerrno>
 #include <string_view>
 
 #include <signal.h>
 #include <unistd.h>
+
+#include "src/app/command.h"
 
 namespace dapple {
 
@@ -18,12 +21,14 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
 
 void Handle(int signal) {
-  constexpr std::string_view kMessage = "\nstopping after this pass; once more to quit without a picture\n";
+  constexpr std::string_view kMessage =
+      "\nstopping after this pass, or before the first one; once more to quit at once\n";
+  if (stopFlag.exchange(true)) _exit(kExitFailure);
   stopSignal = signal;
-  stopFlag = true;
+  const int error = errno;
   // Nothing can be done here where the message cannot be written.
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
-  for (const int s : kSignals) ::signal(s, SIG_DFL);
+  errno = error;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace dapple {
 
 /// While it lives, the first SIGINT or SIGTERM sets the flag and says so on the error stream; a second one ends the
-/// program at once. One at a time.
+/// program at once, as a failure. One at a time.
 class StopSignals {
  public:
   StopSignals();

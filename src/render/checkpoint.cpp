@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,8 +19,13 @@ PassRange PassesOf(const RenderBudget& budget) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(std::string path, RenderOrigin origin, std::optional<double> interval)
-    : path_(std::move(path)), origin_(std::move(origin)), interval_(interval) {}
+Checkpoint::Checkpoint(const std::string& output, RenderOrigin origin, std::optional<double> interval,
+                       OnSetAside onSetAside)
+    : path_(PathFor(output)),
+      olderPath_(OlderPathFor(output)),
+      origin_(std::move(origin)),
+      interval_(interval),
+      onSetAside_(std::move(onSetAside)) {}
 
 std::optional<Film> Checkpoint::Load(const RenderBudget& budget) {
   std::error_code failure;
@@ -37,6 +43,7 @@ std::optional<Film> Checkpoint::Load(const RenderBudget& budget) {
   }
   secondsBefore_ = state.origin.record.seconds.value_or(0);
   passesSaved_ = state.film.PassCount();
+  isOurs_ = true;
   return std::move(state.film);
 }
 
@@ -48,14 +55,28 @@ std::optional<Error> Checkpoint::Update(const RenderProgress& progress) {
     Save(*progress.film, progress.seconds);
   } catch (const Error& error) {
     return error;
+  } catch (const std::bad_alloc&) {
+    return Error(FileLocation(path_), "the memory does not suffice to write the state");
   }
   return std::nullopt;
 }
 
 void Checkpoint::Save(const Film& film, double seconds) {
   origin_.record.seconds = secondsBefore_ + seconds;
+  SetOlderAside();
   WriteState(path_, origin_, film);
   passesSaved_ = film.PassCount();
+}
+
+void Checkpoint::SetOlderAside() {
+  std::error_code failure;
+  if (!isOurs_ && std::filesystem::is_regular_file(path_, failure)) {
+    std::filesystem::rename(path_, olderPath_, failure);
+    if (failure)
+      throw Error(FileLocation(path_), fmt::format("cannot rename it to '{}': {}", olderPath_, failure.message()));
+    if (onSetAside_) onSetAside_(olderPath_);
+  }
+  isOurs_ = true;
 }
 
 }  // namespace dapple

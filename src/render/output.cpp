@@ -52,7 +52,13 @@ void CheckOutput(const std::string& path) {
 void CheckFolder(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw Error(FileLocation(path), "expected the name of a file; this is a folder");
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) throw Error(FileLocation(path), "expected the name of a file; this is a folder");
+  // Devices and pipes are written to where they are.
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    if (access(path.c_str(), W_OK) != 0) throw Error(FileLocation(path), "this is no file, and not writable");
+    return;
+  }
   const fs::path parent = fs::path(path).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   if (!fs::is_directory(folder, ignored)) {

@@ -35,8 +35,8 @@ ImageMetadata ToMetadata(const RenderRecord& record);
 /// ".exr" of "Picture.EXR": what tells formats.
 std::string LowerCaseExtension(const std::string& path);
 
-/// Throws `Error` where no file can be written to `path`: its folder is missing or not writable or takes no file of that
-/// name, or it is a folder itself.
+/// Throws `Error` where no file can be written to `path`: its folder is missing or not writable or takes no file of
+/// that name, or it is a folder itself; or, where it is a device or a pipe, that may not be written to.
 void CheckFolder(const std::string& path);
 
 /// Throws `Error` where an image cannot be written to `path`: the extension is neither .exr nor .png (in any case of

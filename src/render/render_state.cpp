@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -38,7 +39,7 @@ std::string OriginToJson(const RenderOrigin& origin) {
   return DumpJson(json);
 }
 
-RenderOrigin OriginFromJson(std::string_view text) {
+RenderOrigin OriginFromJson(std::string_view text, const FileLocation& location) {
   const auto json = nlohmann::ordered_json::parse(text);
   RenderOrigin origin;
   origin.record.scene = json.at("scene").get<std::string>();
@@ -48,7 +49,7 @@ RenderOrigin OriginFromJson(std::string_view text) {
   origin.record.instructionSet = json.at("instructionSet").get<std::string>();
   origin.exposure = json.at("exposure").get<float>();
   const auto aovs = ParseAovs(json.at("aovs").get<std::string>());
-  if (!aovs) throw Error("not the state of a render: unknown layers");
+  if (!aovs) throw Error(location, "not the state of a render: unknown layers");
   origin.aovs = *aovs;
   if (json.contains("clamp")) origin.record.clamp = json.at("clamp").get<float>();
   if (json.contains("seconds")) origin.record.seconds = json.at("seconds").get<double>();
@@ -74,6 +75,11 @@ std::string ReadBytes(const std::string& path) {
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (failure || !file) throw Error(FileLocation(path), "cannot read the file");
   return bytes;
+}
+
+/// The lowest of the film's passes; behind all where it has none.
+int64_t FirstPass(const Film& film) {
+  return film.Passes().IsEmpty() ? std::numeric_limits<int64_t>::max() : film.Passes().All().front().begin;
 }
 
 }  // namespace
@@ -104,8 +110,13 @@ RenderState ReadState(const std::string& path) {
   const std::string_view sums = all.substr(headEnd, all.size() - kHashDigits - headEnd);
   if (HashOf(head, sums) != hash) throw Error(location, "the file is damaged: its hash is not that of its content");
   try {
-    RenderOrigin origin = OriginFromJson(head.substr(kFirstLine.size()));
-    return {std::move(origin), Film::Deserialize(std::as_bytes(std::span(sums)), location)};
+    RenderState state{OriginFromJson(head.substr(kFirstLine.size()), location),
+                      Film::Deserialize(std::as_bytes(std::span(sums)), location)};
+    if (state.film.ExtraChannels() != FilmChannels(state.origin.aovs))
+      throw Error(location,
+                  fmt::format("not the state of a render: its sums do not have the channels of its layers, {}",
+                              ToString(state.origin.aovs)));
+    return state;
   } catch (const nlohmann::json::exception& error) {
     throw Error(location, fmt::format("not the state of a render: {}", error.what()));
   }
@@ -117,6 +128,7 @@ void JoinState(const RenderState& part, const std::string& path, RenderState* wh
     throw Error(location, fmt::format("it is of another render than those before it: {}", what));
   if (const auto common = part.film.Passes().FirstCommon(whole->film.Passes()))
     throw Error(location, fmt::format("double: {} in it and in those before it", common->ToString()));
+  if (FirstPass(part.film) < FirstPass(whole->film)) whole->origin = part.origin;
   whole->film.Merge(part.film);
 }
 

@@ -36,10 +36,12 @@ bool IsStateName(const std::string& path);
 /// Writes the state as one file, whole or not at all. Throws `Error`.
 void WriteState(const std::string& path, const RenderOrigin& origin, const Film& film);
 
-/// Reads what `WriteState` wrote. Throws `Error` where there is no such file or it is damaged.
+/// Reads what `WriteState` wrote. Throws `Error` where there is no such file or it is damaged, and where the film does
+/// not have the channels of the layers.
 RenderState ReadState(const std::string& path);
 
-/// Adds the passes of `part` (of the file `path`) to `*whole`. Throws `Error` at `path` where it is of another render,
+/// Adds the passes of `part` (of the file `path`) to `*whole`, whose origin becomes that of the part with the lowest
+/// pass, so that the sum is the same in any order of parts. Throws `Error` at `path` where it is of another render,
 /// saying what differs, or where a pass is in both.
 void JoinState(const RenderState& part, const std::string& path, RenderState* whole);
 

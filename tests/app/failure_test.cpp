@@ -87,6 +87,36 @@ TEST_F(Failure, AnOutputOfAMergeThatCannotBeWrittenCostsNoOther) {
   EXPECT_TRUE(Read("b.exr") == Read("whole.exr"));
 }
 
+// The code that promises a picture and a checkpoint is that of a render that has some.
+TEST_F(Failure, ASignalBeforeTheFirstPassLeavesNothingAndIsNoSuccess) {
+  WriteScene("tiny.pbrt");
+  // The reader has something to say of it.
+  Write("warns.pbrt", Read("tiny.pbrt") + "Shape \"curve\"\n");
+  const std::vector<std::string> before = Files();
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const ProgramResult result = RunAndSignalBeforeItSpeaks("warns.pbrt -o a.exr --checkpoint 60", signal);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_TRUE(Contains(result.err, "\nstopped before the first pass was done; nothing is written\n"));
+    EXPECT_EQ(Files(), before);
+  }
+}
+
+TEST_F(Failure, WhatIsNoFileNeedsNoFolderThatTakesFiles) {
+  WriteScene("tiny.pbrt");
+  ASSERT_EQ(mkdir(Path("open").c_str(), 0777), 0);
+  chmod(Path("open").c_str(), 0777);
+  // As another user the streams' files can be written only where they are there.
+  for (const char* stream : {"stdout.txt", "stderr.txt"}) Write(stream, "");
+  for (const char* stream : {"stdout.txt", "stderr.txt"}) chmod(Path(stream).c_str(), 0666);
+  if (Run("--version", BecomeNobody).exitCode != 0) GTEST_SKIP() << "no other user can run the program here";
+  const ProgramResult result =
+      Run("tiny.pbrt --quiet --integrator path --passes 1 -o open/a.exr --stats /dev/null", BecomeNobody);
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  ASSERT_EQ(mkfifo(Path("locked").c_str(), 0400), 0);
+  EXPECT_EQ(Run("tiny.pbrt -o open/a.exr --stats locked", BecomeNobody).err,
+            "locked: error: this is no file, and not writable\n");
+}
+
 // That picture and checkpoint are there is what the code promises; how to go on is told whatever else fails.
 TEST_F(Failure, WhatCannotBeToldChangesNothingOfWhatASignalLeaves) {
   WriteScene("tiny.pbrt");
@@ -123,7 +153,7 @@ TEST_F(Failure, AFullDiskLeavesTheOldCheckpointAndTheRenderGoesOn) {
   EXPECT_TRUE(Contains(full.err, "\na.exr.checkpoint: error: cannot write the file: File too large\n"));
   EXPECT_TRUE(Read("a.exr") == whole) << "the picture needs no checkpoint";
   EXPECT_TRUE(Read("a.exr.checkpoint") == checkpoint);
-  EXPECT_EQ(Files(), (std::vector<std::string>{"a.exr", "a.exr.checkpoint", "tiny.pbrt"}));
+  EXPECT_EQ(Files(), (std::vector<std::string>{"a.exr", "a.exr.checkpoint", "a.exr.checkpoint.old", "tiny.pbrt"}));
   ASSERT_EQ(Run(command + "--passes 6 --resume").exitCode, 0);
   EXPECT_TRUE(Read("a.exr") == whole);
 }
@@ -253,6 +283,20 @@ TEST_F(Failure, ARenderThatDoesNotFitSaysSoBeforeItStarts) {
   const bool isAbove = Contains(result.err, "warning: ");
   EXPECT_TRUE(!isAbove || testing_support::kIsSanitized) << "the peak stays below the limit";
   EXPECT_EQ(Run(command + std::to_string(2 * std::stoi(fitting))).exitCode, 1);
+}
+
+// The state is read before there is a film to put it in.
+TEST_F(Failure, ARenderThatGoesOnTakesNoMoreThanWasReckoned) {
+  if (testing_support::kIsSanitized) GTEST_SKIP() << "sanitizers have memory of their own";
+  WriteScene("tiny.pbrt");
+  const std::string command = "tiny.pbrt --quiet --integrator path --resolution 1000x800 --passes 1 -o a.exr ";
+  ASSERT_EQ(Run(command + "--checkpoint 60").exitCode, 0);
+  const std::string needs = Run(command + "--resume --memory 1M").err, beginning = "error: the render takes about ";
+  ASSERT_TRUE(BeginsWith(needs, beginning));
+  const std::string megabytes = needs.substr(beginning.size(), needs.find(" MB") - beginning.size());
+  const ProgramResult result = Run(command + "--resume --memory " + std::to_string(std::stoi(megabytes) + 8) + "M");
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_EQ(result.err, "") << "the peak stays below the limit";
 }
 
 }  // namespace

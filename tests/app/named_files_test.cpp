@@ -39,6 +39,8 @@ TEST_F(NamedFilesTest, TwoOutputsOfARenderAreNotOneFile) {
   EXPECT_TRUE(BeginsWith(ErrorOf(render + "-o a.exr -o ./a.exr", 2), "error: two of --output are one file"));
   EXPECT_TRUE(
       BeginsWith(ErrorOf(render + "-o a.exr --stats a.exr.checkpoint", 2), "error: the checkpoint and --stats"));
+  EXPECT_TRUE(BeginsWith(ErrorOf(render + "-o a.exr --stats a.exr.checkpoint.old", 2),
+                         "error: the older checkpoint and --stats"));
   EXPECT_TRUE(BeginsWith(ErrorOf(render + "--stats tiny.exr", 1), "tiny.pbrt: error: --output and --stats are "));
   EXPECT_EQ(Run(render + "-o a.exr -o a.png --stats a.json --quiet").exitCode, 0);
 }

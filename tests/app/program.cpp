@@ -1,11 +1,14 @@
 #include "tests/app/program.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <thread>
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -52,6 +55,38 @@ AttributeBegin Translate 1.5 0 1 Rotate 30 0 1 0 ObjectInstance "tent" Attribute
 Material "dielectric"
 Shape "sphere" "float radius" 0.8
 )";
+
+/// Writes to a pipe until it holds no more; how much that was.
+size_t FillPipe(int descriptor) {
+  const int flags = fcntl(descriptor, F_GETFL);
+  fcntl(descriptor, F_SETFL, flags | O_NONBLOCK);
+  size_t filled = 0;
+  while (write(descriptor, " ", 1) == 1) ++filled;
+  fcntl(descriptor, F_SETFL, flags);
+  return filled;
+}
+
+/// All that comes before the last writer leaves.
+std::string ReadToEnd(int descriptor) {
+  std::string text;
+  std::array<char, 4096> block;
+  for (ssize_t n; (n = read(descriptor, block.data(), block.size())) > 0;) text.append(block.data(), n);
+  return text;
+}
+
+/// Whether the process has become the program, and has a handler for the signal by now; true too where it has ended.
+bool Catches(pid_t process, int signal) {
+  const std::string folder = "/proc/" + std::to_string(process);
+  std::error_code failure;
+  const bool isProgram = std::filesystem::equivalent(folder + "/exe", DAPPLE_PROGRAM, failure);
+  std::ifstream status(folder + "/status");
+  uint64_t caught = 0;
+  for (std::string word; status >> word;) {
+    if (word == "Z") return true;
+    if (word == "SigCgt:") status >> std::hex >> caught;
+  }
+  return isProgram && (caught >> (signal - 1) & 1) != 0;
+}
 
 }  // namespace
 
@@ -124,6 +159,29 @@ ProgramResult ProgramTest::RunAndSignal(const std::string& arguments, int signal
   kill(child, signal);
   waitpid(child, &status, 0);
   return Collect(status);
+}
+
+ProgramResult ProgramTest::RunAndSignalBeforeItSpeaks(const std::string& arguments, int signal) const {
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  const size_t filled = FillPipe(ends[1]);
+  const pid_t child = Start(arguments + " >stdout.txt 2>&9 #", [&] {
+    if (dup2(ends[1], 9) < 0) _exit(126);
+    close(ends[0]);
+    close(ends[1]);
+  });
+  close(ends[1]);
+  const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!Catches(child, signal) && std::chrono::steady_clock::now() < giveUp)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(child, signal);
+  const std::string told = ReadToEnd(ends[0]);
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ProgramResult result = Collect(status);
+  result.err = told.substr(filled);
+  return result;
 }
 
 bool ProgramTest::RunAndKill(const std::string& arguments, double seconds) const {

@@ -8,6 +8,7 @@
 
 #include "src/base/numerics.h"
 #include "src/image/metrics.h"
+#include "tests/render/scarce_memory.h"
 #include "tests/support/random_numbers.h"
 
 namespace dapple {
@@ -146,6 +147,14 @@ TEST(ErrorEstimate, IsLookedAtInStepsOfAnEighthToAQuarter) {
   for (int passes = 0; passes <= 80; ++passes)
     if (IsErrorDue(passes)) due.push_back(passes);
   EXPECT_EQ(due, (std::vector<int>{8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80}));
+}
+
+TEST(ErrorEstimate, IsNotThereWhereTheMemoryDoesNotSuffice) {
+  Film film({32, 32}, {{0, 0}, {32, 32}}, Filter::Box());
+  for (const int pass : {0, 1}) film.FinishPass(pass);
+  ASSERT_TRUE(EstimateError(film, 1).has_value());
+  const ScarceMemory scarce(32 * 32);
+  EXPECT_FALSE(EstimateError(film, 1).has_value());
 }
 
 }  // namespace

@@ -8,14 +8,17 @@
 
 #include "src/base/error.h"
 #include "src/render/version.h"
+#include "tests/image/temporary_folder.h"
 
 namespace dapple {
 namespace {
 
-std::string TempPath(const std::string& name) {
-  const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-  return testing::TempDir() + "/output_" + test->name() + "_" + name;
-}
+class Output : public testing::Test {
+ protected:
+  std::string TempPath(const std::string& name) const { return folder_.Path(name); }
+
+  TemporaryFolder folder_;
+};
 
 std::string ReadBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -49,19 +52,18 @@ std::string MessageOf(F action) {
   return "no error";
 }
 
-TEST(Output, AFileThatCannotBeMadeIsToldByTheCheck) {
+TEST_F(Output, AFileThatCannotBeMadeIsToldByTheCheck) {
   // Longer than any that a folder holds.
-  const std::string path = TempPath(std::string(220, 'a') + ".exr");
+  const std::string path = TempPath(std::string(250, 'a') + ".exr");
   EXPECT_EQ(MessageOf([&] { CheckOutput(path); }), path + ": error: cannot write the file: File name too long");
   // Root has the rights to write there, and still nothing can be made.
   EXPECT_NE(MessageOf([] { CheckOutput("/proc/x.exr"); }), "no error");
   const std::string fine = TempPath("fine.exr");
-  std::filesystem::remove(fine);
   EXPECT_EQ(MessageOf([&] { CheckOutput(fine); }), "no error");
   EXPECT_FALSE(std::filesystem::exists(fine)) << "it only looks";
 }
 
-TEST(Output, ExrKeepsPixelsAndRecord) {
+TEST_F(Output, ExrKeepsPixelsAndRecord) {
   const std::string path = TempPath("image.exr");
   const Image image = SmallImage();
   WriteOutput(path, image, ToMetadata(SmallRecord()));
@@ -78,7 +80,7 @@ TEST(Output, ExrKeepsPixelsAndRecord) {
   EXPECT_FALSE(metadata.contains("clamp"));
 }
 
-TEST(Output, SecondsAreRecordedWhereTheyAreGiven) {
+TEST_F(Output, SecondsAreRecordedWhereTheyAreGiven) {
   const std::string path = TempPath("image.exr");
   RenderRecord record = SmallRecord();
   record.seconds = 12.5;
@@ -86,7 +88,7 @@ TEST(Output, SecondsAreRecordedWhereTheyAreGiven) {
   EXPECT_EQ(std::get<double>(ReadExrMetadata(path).at("seconds")), 12.5);
 }
 
-TEST(Output, TheSameImageGivesTheSameFile) {
+TEST_F(Output, TheSameImageGivesTheSameFile) {
   for (const char* name : {"image.exr", "image.png"}) {
     const std::string a = TempPath(std::string("a_") + name), b = TempPath(std::string("b_") + name);
     WriteOutput(a, SmallImage(), ToMetadata(SmallRecord()));
@@ -96,20 +98,20 @@ TEST(Output, TheSameImageGivesTheSameFile) {
   }
 }
 
-TEST(Output, PngIsChosenByTheExtensionInAnyCase) {
+TEST_F(Output, PngIsChosenByTheExtensionInAnyCase) {
   const std::string path = TempPath("IMAGE.PNG");
   WriteOutput(path, SmallImage(), {});
   EXPECT_EQ(ReadBytes(path).substr(1, 3), "PNG");
 }
 
-TEST(Output, RefusesWhatCannotBeWrittenBeforeTheWork) {
+TEST_F(Output, RefusesWhatCannotBeWrittenBeforeTheWork) {
   EXPECT_NO_THROW(CheckOutput(TempPath("image.exr")));
   EXPECT_NO_THROW(CheckOutput("image.png")) << "the current folder";
   const std::string tiff = TempPath("image.tiff");
   EXPECT_EQ(MessageOf([&] { CheckOutput(tiff); }),
             tiff + ": error: expected a file name that ends in .exr or .png, not in '.tiff'");
   EXPECT_NE(MessageOf([] { CheckOutput("image"); }), "no error");
-  const std::string missing = testing::TempDir() + "/no/such/folder/image.exr";
+  const std::string missing = TempPath("no/such/folder/image.exr");
   EXPECT_NE(MessageOf([&] { CheckOutput(missing); }).find("does not exist"), std::string::npos);
   const std::string folder = TempPath("folder.exr");
   std::filesystem::create_directory(folder);
