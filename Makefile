@@ -10,12 +10,13 @@ JOBS ?= $(shell memory=$$(awk '/MemAvailable/ { print int($$2 / 1500000) }' /pro
                 [ -n "$$memory" ] && [ "$$memory" -lt "$$processors" ] && processors=$$memory; \
                 [ "$$processors" -ge 1 ] && echo $$processors || echo 1)
 
-.PHONY: help packages build demo test sanitized-readers sanitize fuzz bench gallery format clean
+.PHONY: help packages build demo test portable sanitized-readers sanitize fuzz bench gallery format clean
 
 help:
 	@echo 'make demo    install what is missing, build, render a caustic to build/demo.png'
 	@echo 'make test    install what is missing, build, run all tests'
 	@echo 'make build   install what is missing, build; the program is build/release/dapple'
+	@echo 'make portable  build the program alone of the preset portable, and check it'
 	@echo 'make sanitize  build and run the tests that watch memory and threads, with sanitizers (bounded: for CI)'
 	@echo 'make fuzz  build and run the fuzz targets of the readers, SECONDS each (clang)'
 	@echo 'make bench   build, run the benchmarks'
@@ -40,6 +41,12 @@ demo: packages
 # Tests labelled slow compare with the reference images in the folder that DAPPLE_REFERENCES names; without it they are skipped.
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+# The program alone: what tests find of it they find in the release build.
+portable: packages
+	@cmake --preset portable
+	@cmake --build build/portable --parallel $(JOBS) --target dapple
+	@scripts/check_portable build/portable/dapple
 
 # The readers and all that they need, by clang under the address and undefined-behaviour sanitizers.
 sanitized-readers: packages
