@@ -16,8 +16,8 @@ namespace dapple {
 
 namespace {
 
-/// A photon (position and payload) stands in its chunk, whose arrays may be half empty while they grow, and in the map.
-constexpr int64_t kBytesPerPhoton = 3 * (12 + 32);
+/// A photon (position and payload), twice while the arrays grow; what the map takes beside is less than that.
+constexpr int64_t kBytesPerPhoton = 2 * (12 + 32);
 /// An image, what it is made from, and its file before and after compression.
 constexpr int64_t kCopiesOfPicture = 4;
 
