@@ -94,11 +94,20 @@ TEST_F(Failure, ASignalBeforeTheFirstPassLeavesNothingAndIsNoSuccess) {
   Write("warns.pbrt", Read("tiny.pbrt") + "Shape \"curve\"\n");
   const std::vector<std::string> before = Files();
   for (const int signal : {SIGINT, SIGTERM}) {
-    const ProgramResult result = RunAndSignalBeforeItSpeaks("warns.pbrt -o a.exr --checkpoint 60", signal);
+    const ProgramResult result = RunAndSignalBeforeItSpeaks("warns.pbrt -o a.exr --checkpoint 60", {signal});
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_TRUE(Contains(result.err, "\nstopped before the first pass was done; nothing is written\n"));
     EXPECT_EQ(Files(), before);
   }
+}
+
+// What it waits for need not end: here it is someone who reads the error stream.
+TEST_F(Failure, ASecondSignalEndsTheProgramAtOnce) {
+  WriteScene("tiny.pbrt");
+  Write("warns.pbrt", Read("tiny.pbrt") + "Shape \"curve\"\n");
+  const ProgramResult result = RunAndSignalBeforeItSpeaks("warns.pbrt -o a.exr", {SIGTERM, SIGINT});
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_FALSE(Contains(result.err, "stopped before"));
 }
 
 TEST_F(Failure, WhatIsNoFileNeedsNoFolderThatTakesFiles) {

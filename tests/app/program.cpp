@@ -161,7 +161,8 @@ ProgramResult ProgramTest::RunAndSignal(const std::string& arguments, int signal
   return Collect(status);
 }
 
-ProgramResult ProgramTest::RunAndSignalBeforeItSpeaks(const std::string& arguments, int signal) const {
+ProgramResult ProgramTest::RunAndSignalBeforeItSpeaks(const std::string& arguments,
+                                                      const std::vector<int>& signals) const {
   int ends[2];
   if (pipe(ends) != 0) return {};
   const size_t filled = FillPipe(ends[1]);
@@ -172,9 +173,9 @@ ProgramResult ProgramTest::RunAndSignalBeforeItSpeaks(const std::string& argumen
   });
   close(ends[1]);
   const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!Catches(child, signal) && std::chrono::steady_clock::now() < giveUp)
+  while (!Catches(child, signals.front()) && std::chrono::steady_clock::now() < giveUp)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  kill(child, signal);
+  for (const int signal : signals) kill(child, signal);
   const std::string told = ReadToEnd(ends[0]);
   close(ends[0]);
   int status = 0;

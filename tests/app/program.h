@@ -34,10 +34,10 @@ class ProgramTest : public testing::Test {
   /// Starts it, sends it the signal once `awaited` stands on its error stream (or it has ended, or 60 s are over), and
   /// waits for its end.
   ProgramResult RunAndSignal(const std::string& arguments, int signal, const std::string& awaited) const;
-  /// Starts it, sends it the signal as soon as it is ready for one (or 60 s are over), and waits for its end. It must
-  /// have something to say before it has done what the signal is to fall into: its error stream takes nothing before
-  /// the signal is sent.
-  ProgramResult RunAndSignalBeforeItSpeaks(const std::string& arguments, int signal) const;
+  /// Starts it, sends it the signals as soon as it is ready for them (or 60 s are over), and waits for its end. It must
+  /// have something to say before it has done what they are to fall into: its error stream takes nothing before they
+  /// are sent.
+  ProgramResult RunAndSignalBeforeItSpeaks(const std::string& arguments, const std::vector<int>& signals) const;
   /// Starts it and kills it (SIGKILL) after so many seconds; false where it had ended before.
   bool RunAndKill(const std::string& arguments, double seconds) const;
   /// Kills it at the first moment that is found to be the one; false where it had ended before.
