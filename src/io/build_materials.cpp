@@ -1,5 +1,7 @@
 #include "src/io/build_materials.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "src/io/build_material_types.h"
@@ -16,72 +18,16 @@ namespace dapple {
 
 namespace {
 
+// Of mixes: larger ones have more lobes than a BSDF, or parts that never count.
+constexpr size_t kDeepest = 64;
+constexpr int kMostMaterials = 1024;
+
 const std::vector<std::string> kMaterialTypes = {
     "matte", "plastic",       "translucent",     "glass",     "mirror",     "metal",          "substrate",
     "uber",  "mix",           "diffuse",         "conductor", "dielectric", "thindielectric", "diffusetransmission",
     "none",  "coateddiffuse", "coatedconductor", "interface"};
 
 bool IsInterfaceType(const std::string& type) { return type.empty() || type == "none" || type == "interface"; }
-
-/// Mixes name other materials; the chain of them shows a circle.
-using Chain = std::vector<const MaterialDescription*>;
-std::unique_ptr<Material> Build(Values& values, const MaterialDescription& material, Chain* chain);
-
-std::shared_ptr<const Material> BuildNamed(Values& values, const std::string& name, const FileLocation& location,
-                                           Chain* chain) {
-  const SceneDescription& description = values.Context().description;
-  const int index = description.FindMaterial(name);
-  if (index < 0) {
-    std::vector<std::string> known;
-    for (const MaterialDescription& material : description.materials)
-      if (!material.name.empty()) known.push_back(material.name);
-    throw Error(location, fmt::format("no material is named \"{}\"{}", name, DidYouMean(name, known)));
-  }
-  const MaterialDescription& material = description.materials[static_cast<size_t>(index)];
-  if (std::find(chain->begin(), chain->end(), &material) != chain->end())
-    throw Error(location, fmt::format("material \"{}\" is a mix of itself", name));
-  return Build(values, material, chain);
-}
-
-std::unique_ptr<Material> BuildMix(const MaterialInput& in, Chain* chain) {
-  const ParameterList& params = in.Params();
-  const FileLocation& location = in.material.location;
-  if (params.Has("materials")) {
-    const std::vector<std::string> names = params.GetStringArray("materials", 2);
-    const FileLocation at = params.LocationOf("materials", location);
-    const auto first = BuildNamed(in.values, names[0], at, chain), second = BuildNamed(in.values, names[1], at, chain);
-    WarnOfClampedShare(params, "amount", 1, in.values.Context().diagnostics);
-    const FloatTexturePtr amount = in.FloatOf("amount", 0.5);
-    // In pbrt-v4 the amount is that of the second.
-    return std::make_unique<MixMaterial>(second, first, std::make_shared<GrayTexture>(amount));
-  }
-  std::shared_ptr<const Material> parts[2];
-  for (int i = 0; i < 2; ++i) {
-    const std::string parameter = i == 0 ? "namedmaterial1" : "namedmaterial2";
-    if (!params.Has(parameter))
-      throw Error(location, fmt::format("a mix without its materials, expected \"string {}\"",
-                                        in.values.Context().IsV3() ? parameter : "materials"));
-    parts[i] = BuildNamed(in.values, params.GetString(parameter, ""), params.LocationOf(parameter, location), chain);
-  }
-  return std::make_unique<MixMaterial>(parts[0], parts[1], in.ShareOf("amount", 0.5));
-}
-
-std::unique_ptr<Material> Build(Values& values, const MaterialDescription& material, Chain* chain) {
-  if (IsInterfaceType(material.type)) {
-    material.params.IgnoreAll();
-    return nullptr;
-  }
-  const MaterialInput in{values, material};
-  chain->push_back(&material);
-  std::unique_ptr<Material> result;
-  if (material.type == "mix") result = BuildMix(in, chain);
-  if (!result) result = BuildV3Material(in);
-  if (!result) result = BuildV4Material(in);
-  if (!result) result = BuildStandIn(in);
-  chain->pop_back();
-  material.params.ReportUnused(values.Context().diagnostics, {"type"});
-  return result;
-}
 
 float ConstantOr(const FloatTexturePtr& texture, float fallback) {
   return texture->IsConstant() ? texture->Evaluate(TextureContext()) : fallback;
@@ -170,7 +116,10 @@ std::unique_ptr<Material> BuildStandIn(const MaterialInput& in) {
   return result;
 }
 
-Materials::Materials(Values& values) : values_(values), indices_(values.Context().description.materials.size()) {}
+Materials::Materials(Values& values)
+    : values_(values),
+      indices_(values.Context().description.materials.size()),
+      byName_(values.Context().description.MaterialsByName()) {}
 
 bool Materials::IsInterface(int material) const {
   return IsInterfaceType(values_.Context().description.materials[static_cast<size_t>(material)].type);
@@ -179,16 +128,88 @@ bool Materials::IsInterface(int material) const {
 int Materials::IndexOf(int material) {
   std::optional<int>& index = indices_[static_cast<size_t>(material)];
   if (index) return *index;
-  Chain chain;
   const MaterialDescription& description = values_.Context().description.materials[static_cast<size_t>(material)];
-  std::unique_ptr<Material> built =
-      AtLocation(description.location, [&] { return Build(values_, description, &chain); });
+  Size size;
+  std::unique_ptr<Material> built = AtLocation(description.location, [&] { return Build(description, &size); });
   index = built ? static_cast<int>(built_.size()) : -1;
   if (!built) return *index;
   built_.push_back(std::move(built));
   const std::string name = Quoted(description.name.empty() ? description.type : description.name, 100);
   names_.push_back(description.IsGiven() ? fmt::format("{} ({})", name, description.location.ToString()) : name);
   return *index;
+}
+
+std::unique_ptr<Material> Materials::Build(const MaterialDescription& material, Size* size) {
+  if (IsInterfaceType(material.type)) {
+    material.params.IgnoreAll();
+    return nullptr;
+  }
+  const MaterialInput in{values_, material};
+  unfinished_.push_back({&material, {}});
+  std::unique_ptr<Material> result;
+  if (material.type == "mix") result = BuildMix(in);
+  if (!result) result = BuildV3Material(in);
+  if (!result) result = BuildV4Material(in);
+  if (!result) result = BuildStandIn(in);
+  *size = unfinished_.back().size;
+  unfinished_.pop_back();
+  material.params.ReportUnused(values_.Context().diagnostics, {"type"});
+  return result;
+}
+
+std::unique_ptr<Material> Materials::BuildMix(const MaterialInput& in) {
+  const ParameterList& params = in.Params();
+  const FileLocation& location = in.material.location;
+  if (params.Has("materials")) {
+    const std::vector<std::string> names = params.GetStringArray("materials", 2);
+    const FileLocation at = params.LocationOf("materials", location);
+    const auto first = PartOf(names[0], at), second = PartOf(names[1], at);
+    WarnOfClampedShare(params, "amount", 1, values_.Context().diagnostics);
+    const FloatTexturePtr amount = in.FloatOf("amount", 0.5);
+    // In pbrt-v4 the amount is that of the second.
+    return std::make_unique<MixMaterial>(second, first, std::make_shared<GrayTexture>(amount));
+  }
+  std::shared_ptr<const Material> parts[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::string parameter = i == 0 ? "namedmaterial1" : "namedmaterial2";
+    if (!params.Has(parameter))
+      throw Error(location, fmt::format("a mix without its materials, expected \"string {}\"",
+                                        values_.Context().IsV3() ? parameter : "materials"));
+    parts[i] = PartOf(params.GetString(parameter, ""), params.LocationOf(parameter, location));
+  }
+  return std::make_unique<MixMaterial>(parts[0], parts[1], in.ShareOf("amount", 0.5));
+}
+
+std::shared_ptr<const Material> Materials::PartOf(const std::string& name, const FileLocation& namedAt) {
+  const MaterialDescription& material = Named(name, namedAt);
+  if (std::ranges::find(unfinished_, &material, &Unfinished::description) != unfinished_.end())
+    throw Error(namedAt, fmt::format("material \"{}\" is a mix of itself", name));
+  const auto checkDepth = [&](size_t depth) {
+    if (depth > kDeepest) throw Error(namedAt, fmt::format("mixes name each other more than {} deep", kDeepest));
+  };
+  const auto [entry, isNew] = parts_.try_emplace(&material);
+  Part& part = entry->second;
+  if (isNew) {
+    checkDepth(unfinished_.size() + 1);
+    part.material = Build(material, &part.size);
+  }
+  Size& whole = unfinished_.back().size;
+  whole.materials += part.size.materials;
+  whole.depth = std::max(whole.depth, part.size.depth + 1);
+  checkDepth(static_cast<size_t>(whole.depth));
+  if (whole.materials > kMostMaterials)
+    throw Error(namedAt,
+                fmt::format("a mix of more than {} materials, each counted as often as it is named", kMostMaterials));
+  return part.material;
+}
+
+const MaterialDescription& Materials::Named(const std::string& name, const FileLocation& namedAt) const {
+  const auto found = byName_.find(name);
+  if (found != byName_.end()) return values_.Context().description.materials[static_cast<size_t>(found->second)];
+  std::vector<std::string> known;
+  for (const auto& entry : byName_) known.emplace_back(entry.first);
+  std::ranges::sort(known);
+  throw Error(namedAt, fmt::format("no material is named \"{}\"{}", name, DidYouMean(name, known)));
 }
 
 }  // namespace dapple

@@ -141,8 +141,20 @@ TexturePtr<T> BuildCheckerboard(Values& values, const TextureDescription& textur
 template <typename T>
 TexturePtr<T> BuildScale(Values& values, const TextureDescription& texture) {
   const ParameterList& params = texture.params;
-  if (values.Context().IsV3()) return MakeScale(Get<T>(values, params, "tex1", 1), Get<T>(values, params, "tex2", 1));
-  return MakeScale(Get<T>(values, params, "tex", 1), values.GetFloat(params, "scale", 1));
+  if (values.Context().IsV3()) {
+    const TexturePtr<T> first = Get<T>(values, params, "tex1", 1), second = Get<T>(values, params, "tex2", 1);
+    return MakeScale(first, second);
+  }
+  const TexturePtr<T> scaled = Get<T>(values, params, "tex", 1);
+  return MakeScale(scaled, values.GetFloat(params, "scale", 1));
+}
+
+template <typename T>
+TexturePtr<T> BuildMix(Values& values, const TextureDescription& texture) {
+  const ParameterList& params = texture.params;
+  // One after the other: which of them has an error first does not depend on the compiler.
+  const TexturePtr<T> first = Get<T>(values, params, "tex1", 0), second = Get<T>(values, params, "tex2", 1);
+  return MakeMix<T>(first, second, values.GetFloat(params, "amount", 0.5));
 }
 
 template <typename T>
@@ -153,9 +165,7 @@ TexturePtr<T> BuildSupported(Values& values, const TextureDescription& texture) 
   if (type == "imagemap") return BuildImageMap<T>(values, texture);
   if (type == "checkerboard") return BuildCheckerboard<T>(values, texture);
   if (type == "scale") return BuildScale<T>(values, texture);
-  if (type == "mix")
-    return MakeMix<T>(Get<T>(values, params, "tex1", 0), Get<T>(values, params, "tex2", 1),
-                      values.GetFloat(params, "amount", 0.5));
+  if (type == "mix") return BuildMix<T>(values, texture);
   if (type == "bilerp")
     return MakeBilerp<T>(BuildMapping(values.Context(), texture), GetConstant<T>(values, params, "v00", 0),
                          GetConstant<T>(values, params, "v01", 1), GetConstant<T>(values, params, "v10", 0),

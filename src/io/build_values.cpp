@@ -13,6 +13,9 @@ namespace dapple {
 
 namespace {
 
+// A level takes some kilobytes of the stack when it is built, much less when it is asked.
+constexpr std::size_t kDeepest = 256, kMostEvaluations = 65'536;
+
 const char* RgbSpaceName(RgbSpace space) {
   switch (space) {
     case RgbSpace::DciP3:
@@ -48,6 +51,11 @@ void CheckNumber(const Parameter& parameter, std::string_view of, double number,
                           named.name, named.location.ToString()));
 }
 
+void CheckDepth(const Parameter& parameter, std::size_t depth) {
+  if (depth > kDeepest)
+    throw Error(parameter.location, fmt::format("textures name each other more than {} deep", kDeepest));
+}
+
 [[noreturn]] void FailColorType(const Parameter& parameter) {
   throw Error(parameter.location, fmt::format("parameter \"{}\" is \"{}\", expected a colour: \"rgb\", \"spectrum\", "
                                               "\"blackbody\" or a texture",
@@ -60,7 +68,8 @@ Values::Values(const BuildContext& context)
     : context_(context),
       images_(&context.diagnostics),
       colorTextures_(context.description.textures.size()),
-      floatTextures_(context.description.textures.size()) {}
+      floatTextures_(context.description.textures.size()),
+      costs_(context.description.textures.size()) {}
 
 Spectrum Values::ToSpectrum(const Parameter& parameter) const {
   const Spectrum::Outside outside = context_.IsV3() ? Spectrum::Outside::kConstant : Spectrum::Outside::kZero;
@@ -145,20 +154,43 @@ void Values::FailTexture(const Parameter& parameter, bool isSpectrum) const {
               fmt::format("no {} texture is named \"{}\" here{}", kind, name, DidYouMean(name, known)));
 }
 
+void Values::AddCost(const Parameter& parameter, const TextureCost& part) {
+  if (building_.empty()) return;
+  TextureCost& whole = building_.back();
+  whole.evaluations += part.evaluations;
+  whole.depth = std::max(whole.depth, part.depth + 1);
+  CheckDepth(parameter, whole.depth);
+  if (whole.evaluations > kMostEvaluations)
+    throw Error(parameter.location, fmt::format("textures name each other so often that one look at this one may take "
+                                                "more than {} evaluations, expected fewer",
+                                                kMostEvaluations));
+}
+
+template <typename Ptr, typename Build>
+Ptr Values::TextureAt(const Parameter& parameter, int index, std::vector<Ptr>* built, Build build) {
+  const auto i = static_cast<size_t>(index);
+  Ptr& texture = (*built)[i];
+  if (!texture) {
+    CheckDepth(parameter, building_.size() + 1);
+    building_.emplace_back();
+    texture = build(*this, context_.description.textures[i]);
+    costs_[i] = building_.back();
+    building_.pop_back();
+  }
+  AddCost(parameter, costs_[i]);
+  return texture;
+}
+
 ColorTexturePtr Values::ColorTextureAt(const Parameter& parameter) {
   CheckOneValue(parameter, parameter.Count());
   if (parameter.spectrumTexture < 0) FailTexture(parameter, true);
-  const auto index = static_cast<size_t>(parameter.spectrumTexture);
-  if (!colorTextures_[index]) colorTextures_[index] = BuildColorTexture(*this, context_.description.textures[index]);
-  return colorTextures_[index];
+  return TextureAt(parameter, parameter.spectrumTexture, &colorTextures_, BuildColorTexture);
 }
 
 FloatTexturePtr Values::FloatTextureAt(const Parameter& parameter) {
   CheckOneValue(parameter, parameter.Count());
   if (parameter.floatTexture < 0) FailTexture(parameter, false);
-  const auto index = static_cast<size_t>(parameter.floatTexture);
-  if (!floatTextures_[index]) floatTextures_[index] = BuildFloatTexture(*this, context_.description.textures[index]);
-  return floatTextures_[index];
+  return TextureAt(parameter, parameter.floatTexture, &floatTextures_, BuildFloatTexture);
 }
 
 ColorTexturePtr Values::FindColor(const ParameterList& params, std::string_view name) {

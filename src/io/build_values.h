@@ -27,6 +27,12 @@ class GrayTexture final : public ColorTexture {
   FloatTexturePtr gray_;
 };
 
+/// What one look at a texture may take.
+struct TextureCost {
+  std::size_t evaluations = 1;  ///< of it and of all textures below it, one that is named twice twice
+  std::size_t depth = 1;        ///< textures on the longest way down
+};
+
 /// Builds what parameters say; builds textures when they are first asked for, each once.
 class Values {
  public:
@@ -36,7 +42,8 @@ class Values {
   const BuildContext& Context() const { return context_; }
 
   // Textures. An absent parameter gives `fallback`, or null from `Find...`. Errors: a texture of that name is not there
-  // or is of the other kind; a type that is no colour or number; more than one value.
+  // or is of the other kind; a type that is no colour or number; more than one value; textures that name each other
+  // more than 256 deep, or so often that one look at the first may take more than 65,536 evaluations.
   ColorTexturePtr GetColor(const ParameterList& params, std::string_view name, const Color& fallback);
   ColorTexturePtr FindColor(const ParameterList& params, std::string_view name);
   FloatTexturePtr GetFloat(const ParameterList& params, std::string_view name, double fallback);
@@ -62,6 +69,11 @@ class Values {
  private:
   ColorTexturePtr ColorTextureAt(const Parameter& parameter);
   FloatTexturePtr FloatTextureAt(const Parameter& parameter);
+  /// `(*built)[index]`, which `build` makes where it is not there yet; `parameter` names it.
+  template <typename Ptr, typename Build>
+  Ptr TextureAt(const Parameter& parameter, int index, std::vector<Ptr>* built, Build build);
+  /// Adds to the cost of the texture that is being built, if one is, that of the one that its `parameter` names.
+  void AddCost(const Parameter& parameter, const TextureCost& part);
   Color ToColor(const Parameter& parameter, RgbUse use) const;
   [[noreturn]] void FailTexture(const Parameter& parameter, bool isSpectrum) const;
 
@@ -70,6 +82,8 @@ class Values {
   int readOnce_ = 0;
   std::vector<ColorTexturePtr> colorTextures_;  // by index of the description; null: not built yet
   std::vector<FloatTexturePtr> floatTextures_;
+  std::vector<TextureCost> costs_;     // of those that are built
+  std::vector<TextureCost> building_;  // so far, of those that are being built; each names the next
 };
 
 }  // namespace dapple

@@ -13,10 +13,11 @@ bool Exists(const std::filesystem::path& path) {
 
 }  // namespace
 
-int SceneDescription::FindMaterial(std::string_view name) const {
-  for (std::size_t i = materials.size(); i-- > 1;)
-    if (!name.empty() && materials[i].name == name) return static_cast<int>(i);
-  return -1;
+std::unordered_map<std::string_view, int> SceneDescription::MaterialsByName() const {
+  std::unordered_map<std::string_view, int> indices;
+  for (std::size_t i = 1; i < materials.size(); ++i)
+    if (!materials[i].name.empty()) indices[materials[i].name] = static_cast<int>(i);
+  return indices;
 }
 
 std::filesystem::path SceneDescription::ResolvePath(const std::string& name, const FileLocation& namedAt) const {

@@ -7,6 +7,8 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "src/base/error.h"
@@ -84,8 +86,9 @@ struct SceneDescription {
   std::vector<ObjectDefinition> objects;
   std::vector<InstanceDescription> instances;
 
-  /// The last material that MakeNamedMaterial gave this name (for "mix"), or -1.
-  int FindMaterial(std::string_view name) const;
+  /// For each name that MakeNamedMaterial gave, the index of the last material of that name, which a "mix" means by it.
+  /// The names are views of the description's.
+  std::unordered_map<std::string_view, int> MaterialsByName() const;
   /// Where a file named in a parameter lies: absolute names as they are, others relative to the main scene's folder, or
   /// else to the folder of the file that names it. Where neither exists, the first, for the message.
   std::filesystem::path ResolvePath(const std::string& name, const FileLocation& namedAt) const;

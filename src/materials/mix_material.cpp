@@ -27,8 +27,8 @@ Bsdf BsdfOf(const Material* material, const SurfaceInteraction& hit) {
 
 MixMaterial::MixMaterial(std::shared_ptr<const Material> first, std::shared_ptr<const Material> second,
                          ColorTexturePtr amount)
-    : first_(std::move(first)), second_(std::move(second)), amount_(std::move(amount)) {
-  const int lobes = Facts().maxLobes;
+    : first_(std::move(first)), second_(std::move(second)), amount_(std::move(amount)), facts_(FindFacts()) {
+  const int lobes = facts_.maxLobes;
   if (lobes > Bsdf::kMaxLobes) {
     throw Error(fmt::format("the mixed materials have {} lobes in all; expected at most {}: mix fewer materials", lobes,
                             Bsdf::kMaxLobes));
@@ -47,7 +47,7 @@ Bsdf MixMaterial::GetBsdf(const SurfaceInteraction& hit) const {
   return blend;
 }
 
-MaterialFacts MixMaterial::Facts() const {
+MaterialFacts MixMaterial::FindFacts() const {
   const MaterialFacts first = FactsOf(first_.get()), second = FactsOf(second_.get());
   if (amount_->IsConstant()) {
     const Color amount = EvaluateShare(amount_, TextureContext(), Color());

@@ -17,11 +17,14 @@ class MixMaterial final : public Material {
   /// Throws `Error` where both together could have more lobes than `Bsdf::kMaxLobes` (deeply nested mixes).
   MixMaterial(std::shared_ptr<const Material> first, std::shared_ptr<const Material> second, ColorTexturePtr amount);
   Bsdf GetBsdf(const SurfaceInteraction& hit) const override;
-  MaterialFacts Facts() const override;
+  MaterialFacts Facts() const override { return facts_; }
 
  private:
+  MaterialFacts FindFacts() const;
+
   std::shared_ptr<const Material> first_, second_;
   ColorTexturePtr amount_;
+  MaterialFacts facts_;
 };
 
 }  // namespace dapple

@@ -40,11 +40,18 @@ class BadInput : public ProgramTest {
   }
 
   /// In a scene that is otherwise whole.
-  std::string WorldError(const std::string& statements) {
-    return ErrorOf(
-        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\nLightSource \"point\"\n" +
-        statements);
+  std::string WorldError(const std::string& statements) { return ErrorOf(kWorld + statements); }
+
+  /// The warnings of a render of one pass by camera paths, which succeeds.
+  std::string WarningsOf(const std::string& scene) {
+    Write("slow.pbrt", scene);
+    const ProgramResult result = Run("slow.pbrt --quiet --integrator path --passes 1 --threads 2", Bound);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return result.err;
   }
+
+  static constexpr const char* kWorld =
+      "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\nLightSource \"point\"\n";
 };
 
 TEST_F(BadInput, IncludesThatNeverEnd) {
@@ -68,6 +75,55 @@ TEST_F(BadInput, HundredMegabytesOfBlocks) {
   std::string blocks = "WorldBegin\n";
   while (blocks.size() < 100'000'000) blocks += "AttributeBegin\n";
   EXPECT_TRUE(BeginsWith(ErrorOf(blocks), "bad.pbrt:10002:1: error: blocks are more than 10000 deep"));
+}
+
+/// `count` lines; each is what `line(i)` gives.
+template <typename Line>
+std::string Lines(int count, const Line& line) {
+  std::string lines;
+  for (int i = 1; i <= count; ++i) lines += line(std::to_string(i), std::to_string(i - 1)) + "\n";
+  return lines;
+}
+
+// Each level asks the one below, twice where it can.
+TEST_F(BadInput, TexturesThatNameTextures) {
+  const std::string first = "Texture \"t0\" \"spectrum\" \"checkerboard\"\n";
+  const auto shown = [](int last) {
+    return "Material \"diffuse\" \"texture reflectance\" \"t" + std::to_string(last) + "\" Shape \"sphere\"";
+  };
+  const std::string scales = Lines(200, [](const std::string& name, const std::string& below) {
+    return "Texture \"t" + name + "\" \"spectrum\" \"scale\" \"texture tex\" \"t" + below + "\"";
+  });
+  EXPECT_EQ(WarningsOf(kWorld + first + scales + shown(200)), "");
+  const std::string mixes = Lines(40, [](const std::string& name, const std::string& below) {
+    return "Texture \"t" + name + "\" \"spectrum\" \"mix\" \"texture tex1\" \"t" + below + "\" \"texture tex2\" \"t" +
+           below + "\"";
+  });
+  // "t15" takes 2^16 - 1 evaluations.
+  EXPECT_TRUE(BeginsWith(WorldError(first + mixes + shown(40)),
+                         "bad.pbrt:20:53: error: textures name each other so often that one look at this one may take "
+                         "more than 65536 evaluations"));
+  const std::string boards = Lines(100'000, [](const std::string& name, const std::string& below) {
+    return "Texture \"t" + name + "\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"t" + below + "\"";
+  });
+  EXPECT_TRUE(BeginsWith(WorldError(first + boards + shown(100'000)),
+                         "bad.pbrt:99749:44: error: textures name each other more than 256 deep"));
+}
+
+TEST_F(BadInput, MixesThatNameMixes) {
+  const std::string first = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
+  const auto mixes = [](int count, bool isTwice) {
+    return Lines(count, [&](const std::string& name, const std::string& below) {
+      return "MakeNamedMaterial \"m" + name +
+             "\" \"string type\" \"mix\" \"float amount\" 0 \"string materials\" [\"m" + below + "\" \"" +
+             (isTwice ? "m" + below : "m0") + "\"]";
+    });
+  };
+  const auto shown = [](int last) { return "NamedMaterial \"m" + std::to_string(last) + "\" Shape \"sphere\""; };
+  EXPECT_TRUE(BeginsWith(WorldError(first + mixes(40, true) + shown(40)),
+                         "bad.pbrt:14:62: error: a mix of more than 1024 materials"));
+  EXPECT_TRUE(BeginsWith(WorldError(first + mixes(100'000, false) + shown(100'000)),
+                         "bad.pbrt:99941:65: error: mixes name each other more than 64 deep"));
 }
 
 TEST_F(BadInput, NumbersThatAreNone) {

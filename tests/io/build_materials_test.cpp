@@ -296,6 +296,24 @@ NamedMaterial "m")"),
             "ashikhminshirley; did you mean \"beckmann\"?");
 }
 
+TEST(BuildMaterials, MixesNameEachOtherSoDeepAndSoOften) {
+  // The error of "mN", each of N mixes of the one before, which counts for nothing, and of `other`.
+  const auto error = [](int last, const std::string& other) {
+    std::string text = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
+    for (int i = 1; i <= last; ++i) {
+      const std::string below = "\"m" + std::to_string(i - 1) + "\"";
+      text += "MakeNamedMaterial \"m" + std::to_string(i) + "\" \"string type\" \"mix\" \"float amount\" 1 " +
+              "\"string materials\" [" + below + " " + (other.empty() ? below : other) + "]\n";
+    }
+    return WorldError(text + "NamedMaterial \"m" + std::to_string(last) + "\"\n" + Square(4), 4);
+  };
+  EXPECT_EQ(error(63, "\"m0\""), "no error");
+  EXPECT_EQ(error(64, "\"m0\""), "a.pbrt:6:61: error: mixes name each other more than 64 deep");
+  EXPECT_EQ(error(9, ""), "no error") << "2^10 - 1 materials";
+  EXPECT_EQ(error(10, ""),
+            "a.pbrt:15:62: error: a mix of more than 1024 materials, each counted as often as it is named");
+}
+
 TEST(BuildMaterials, ValuesWithoutMeaningAreErrors) {
   const std::pair<const char*, int> materials[] = {{R"("dielectric" "float eta" -1.5)", 4},
                                                    {R"("dielectric" "float eta" 0)", 4},

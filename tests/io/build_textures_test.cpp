@@ -140,5 +140,39 @@ Texture "u" "spectrum" "scale" "texture tex" "t")")
       "no error");
 }
 
+/// The error of a scene that shows "tN", a checkerboard at the end of N others that each name the one before, in the
+/// parameters that `named` makes of its name.
+template <typename Named>
+std::string ChainError(int last, const Named& named) {
+  std::string textures = "Texture \"t0\" \"spectrum\" \"checkerboard\"\n", shown;
+  for (int i = 1; i <= last; ++i)
+    textures += "Texture \"t" + std::to_string(i) + "\" \"spectrum\" \"checkerboard\" " +
+                named("\"t" + std::to_string(i - 1) + "\"") + "\n";
+  // From the first on, so that each finds the one that it names built.
+  for (int i = 0; i <= last; ++i)
+    shown += "Material \"diffuse\" \"texture reflectance\" \"t" + std::to_string(i) + "\"\n" + Square(4);
+  const std::string top =
+      "Material \"diffuse\" \"texture reflectance\" \"t" + std::to_string(last) + "\"\n" + Square(4);
+  const std::string upward = WorldError(textures + shown, 4), downward = WorldError(textures + top, 4);
+  EXPECT_EQ(upward == "no error", downward == "no error") << upward << "\n" << downward;
+  return upward;
+}
+
+TEST(BuildTextures, NameEachOtherSoDeepAndNoDeeper) {
+  const auto once = [](const std::string& below) { return "\"texture tex1\" " + below; };
+  EXPECT_EQ(ChainError(255, once), "no error");
+  EXPECT_EQ(ChainError(256, once), "a.pbrt:261:42: error: textures name each other more than 256 deep");
+}
+
+TEST(BuildTextures, NameEachOtherSoOftenAndNoMore) {
+  const auto twice = [](const std::string& below) {
+    return "\"texture tex1\" " + below + " \"texture tex2\" " + below;
+  };
+  EXPECT_EQ(ChainError(15, twice), "no error") << "2^16 - 1 evaluations";
+  EXPECT_EQ(ChainError(16, twice),
+            "a.pbrt:21:62: error: textures name each other so often that one look at this one may take more than 65536 "
+            "evaluations, expected fewer");
+}
+
 }  // namespace
 }  // namespace dapple

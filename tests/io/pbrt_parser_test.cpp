@@ -119,9 +119,9 @@ TEST(PbrtParser, NamedMaterialsByNameAndInOrder) {
   EXPECT_EQ(scene.materials.at(scene.shapes[0].material).name, "gold");
   EXPECT_EQ(scene.materials.at(scene.shapes[0].material).type, "conductor");
   EXPECT_EQ(scene.materials.at(scene.shapes[1].material).type, "dielectric");
-  EXPECT_EQ(scene.FindMaterial("gold"), scene.shapes[0].material);
-  EXPECT_EQ(scene.FindMaterial("lead"), -1);
-  EXPECT_EQ(scene.FindMaterial(""), -1);
+  const std::unordered_map<std::string_view, int> expected = {{"gold", scene.shapes[0].material},
+                                                              {"later", scene.shapes[1].material}};
+  EXPECT_EQ(scene.MaterialsByName(), expected);
 }
 
 TEST(PbrtParser, NamesOfABlockEndWithItWhereAnOuterOneIsThere) {
