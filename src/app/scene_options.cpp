@@ -28,7 +28,7 @@ namespace dapple {
 namespace {
 
 constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
-constexpr int kMaxLightSamples = 1 << 16, kMaxCameraSamples = 1 << 12;
+constexpr int kMaxCameraSamples = 1 << 12;
 
 /// The numbers of `text`, which `separator` parts; nothing where it holds anything else.
 template <typename T>
@@ -144,7 +144,7 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
       ->type_name("N")
       ->group(group);
   command->add_option("--max-depth", options->maxDepth, "Scattering events on a path")
-      ->check(CheckWhole(0, kMost))
+      ->check(CheckWhole(0, kMostDepth))
       ->type_name("N")
       ->group(group);
   command
@@ -176,7 +176,7 @@ void AddAlgorithmGroup(CLI::App* command, SceneOptions* options) {
       ->add_option("--light-samples", options->lightSamples,
                    "Next-event samples at each vertex of a camera path; by default 1, or an infinite light's own "
                    "\"samples\"")
-      ->check(CheckWhole(1, kMaxLightSamples))
+      ->check(CheckWhole(1, kMostLightSamples))
       ->type_name("N")
       ->group(group);
   command

@@ -209,12 +209,23 @@ void BuildPhotons(const Entity& integrator, RenderSettings* settings) {
   settings->radius = radius;
 }
 
+/// Where nothing absorbs, more would hold the render up for ever.
+int GetMaxDepth(const BuildContext& context) {
+  const Entity& integrator = context.description.integrator;
+  const int depth = GetIntAtLeast(integrator, "maxdepth", kPbrtDefaultDepth, 0);
+  if (depth > kMostDepth)
+    context.diagnostics.Warn(
+        integrator.params.LocationOf("maxdepth", integrator.location),
+        fmt::format("parameter \"maxdepth\" is {}, expected at most {}; {} is used", depth, kMostDepth, kMostDepth));
+  return std::min(depth, kMostDepth);
+}
+
 void BuildIntegrator(const BuildContext& context, RenderSettings* settings) {
   const Entity& integrator = context.description.integrator;
   if (!integrator.IsGiven()) return;
   settings->integrator = IntegratorNameOf(context.description);
   settings->integratorLocation = integrator.location;
-  settings->maxDepth = GetIntAtLeast(integrator, "maxdepth", kPbrtDefaultDepth, 0);
+  settings->maxDepth = GetMaxDepth(context);
   if (integrator.params.Has("seed")) settings->seed = integrator.params.GetInt("seed", 0);
   if (integrator.type == "sppm") settings->iterations = GetIterations(context, *settings);
   static const std::vector<std::string> kWithPhotons = {"sppm", "hybrid", "photon_mapping", "light_tracing"};

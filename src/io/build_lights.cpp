@@ -11,6 +11,7 @@
 #include "lights/projection_light.h"
 #include "lights/spot_light.h"
 #include "src/base/numerics.h"
+#include "src/io/value_bounds.h"
 
 namespace dapple {
 
@@ -130,11 +131,8 @@ EnvironmentMapping MappingOf(const BuildContext& context) {
 /// Next-event samples of an infinite light, as pbrt-v3 spells them.
 int GetSampleCount(const LightDescription& light) {
   const char* const name = light.params.Has("samples") ? "samples" : "nsamples";
-  const int count = light.params.GetInt(name, 1);
-  if (count < 1)
-    throw Error(light.params.LocationOf(name, light.location),
-                fmt::format("parameter \"{}\" is {}, expected 1 or more", name, count));
-  return count;
+  CheckBounds(light.params, name, {.least = 1, .most = kMostLightSamples});
+  return light.params.GetInt(name, 1);
 }
 
 /// How an infinite light is sampled: mostly Dapple's own parameters.

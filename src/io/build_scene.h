@@ -16,6 +16,12 @@
 
 namespace dapple {
 
+/// The longest paths that a file or the command line may ask for, in scattering events: where nothing absorbs, only
+/// this ends them. After so many, a surface that absorbs 1 % an event has left 3e-5 of the light.
+inline constexpr int kMostDepth = 1024;
+/// The most next-event samples at a vertex that either may ask for.
+inline constexpr int kMostLightSamples = 65'536;
+
 /// What the command line says; absent: the file's own.
 struct BuildOptions {
   int pbrtVersion = 0;  ///< 3 or 4; 0: found from the text (`LoadScene`)

@@ -126,6 +126,20 @@ TEST_F(BadInput, MixesThatNameMixes) {
                          "bad.pbrt:99941:65: error: mixes name each other more than 64 deep"));
 }
 
+// Of light that nothing absorbs, and of shadow rays.
+TEST_F(BadInput, WorkWithoutEnd) {
+  for (const std::string white : {"\"diffuse\" \"rgb reflectance\" [1 1 1]", "\"dielectric\""}) {
+    const std::string warnings =
+        WarningsOf("Integrator \"path\" \"integer maxdepth\" 2147483647\n" + std::string(kWorld) + "Material " + white +
+                   " Shape \"sphere\" \"float radius\" 20");
+    EXPECT_TRUE(Contains(warnings,
+                         "slow.pbrt:1:19: warning: parameter \"maxdepth\" is 2147483647, expected at most "
+                         "1024; 1024 is used"));
+  }
+  EXPECT_TRUE(BeginsWith(WorldError("LightSource \"infinite\" \"integer samples\" 2147483647"),
+                         "bad.pbrt:4:24: error: parameter \"samples\" is 2147483647, expected 1 to 65536"));
+}
+
 TEST_F(BadInput, NumbersThatAreNone) {
   for (const char* number : {"1e999", "-1e999", "nan", "inf", "-inf", "1e", "0x10", "1.2.3", "--1"}) {
     EXPECT_TRUE(BeginsWith(WorldError("Shape \"sphere\" \"float radius\" [ " + std::string(number) + " ]"),

@@ -179,6 +179,8 @@ TEST_F(Program, WrongUsageExitsWith2AndSaysWhy) {
         "tiny.pbrt --radius nan",
         "tiny.pbrt --photons 0",
         "tiny.pbrt --max-depth -1",
+        "tiny.pbrt --max-depth 1025",
+        "tiny.pbrt --light-samples 65537",
         "info",
         "emit tiny.pbrt",
         "emit tiny.pbrt --rays 0 -o a.csv",

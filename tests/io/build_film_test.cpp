@@ -108,6 +108,7 @@ TEST(BuildFilm, IntegratorsKeepTheirNameAndNumbers) {
   EXPECT_EQ(v3.photonsPerIteration, 5000);
   EXPECT_EQ(v3.radius, 0.25);
   EXPECT_EQ(v3.maxDepth, 9);
+  EXPECT_EQ(SettingsOf(R"(Integrator "path" "integer maxdepth" 1024)", 4).maxDepth, 1024);
   EXPECT_EQ(SettingsOf(R"(Integrator "sppm")", 3).iterations, 64);
   EXPECT_FALSE(SettingsOf(R"(Integrator "sppm")", 3).radius);
   // In pbrt-v4 the sampler says how many.

@@ -250,6 +250,8 @@ TEST(BuildLights, SamplesOfInfiniteLights) {
   EXPECT_EQ(Lit(R"(LightSource "infinite" "integer nsamples" 4)", 3)->Lights()[0]->SampleCount(), 4);
   EXPECT_EQ(Lit(R"(LightSource "infinite")", 4)->Lights()[0]->SampleCount(), 1);
   EXPECT_THROW(Lit(R"(LightSource "infinite" "integer samples" 0)", 3), Error);
+  EXPECT_EQ(Lit(R"(LightSource "infinite" "integer samples" 65536)", 3)->Lights()[0]->SampleCount(), 65536);
+  EXPECT_THROW(Lit(R"(LightSource "infinite" "integer samples" 65537)", 3), Error);
 }
 
 // Of a sky and dimmer ground: one sample of the light leaves all of the ground to the BSDF, sixteen leave a little.
