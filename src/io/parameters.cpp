@@ -78,6 +78,13 @@ int Parameter::Count() const {
   return static_cast<int>(numbers.size()) / std::max(1, ComponentCount(type));
 }
 
+std::size_t MemoryBytes(const Parameter& parameter) {
+  std::size_t bytes = sizeof(Parameter) + parameter.name.size();
+  bytes += parameter.numbers.size() * sizeof(double) + parameter.integers.size() * sizeof(int);
+  for (const std::string& text : parameter.strings) bytes += sizeof(std::string) + text.size();
+  return bytes;
+}
+
 void ParameterList::Add(Parameter parameter) {
   const auto sameName = [&](const Parameter& other) { return other.name == parameter.name; };
   const auto found = std::find_if(parameters_.begin(), parameters_.end(), sameName);

@@ -58,6 +58,9 @@ struct Parameter {
   int Count() const;
 };
 
+/// What a copy of the parameter takes in memory, about.
+std::size_t MemoryBytes(const Parameter& parameter);
+
 /// "point3", "rgb", ...: the type's name as pbrt-v4 writes it.
 std::string_view TypeName(ParameterType type);
 

@@ -12,8 +12,6 @@ namespace dapple {
 
 namespace {
 
-constexpr std::size_t kMostParameters = 256;  // pbrt's longest lists have some thirty
-
 struct SpelledType {
   std::string_view spelling;
   ParameterType type;

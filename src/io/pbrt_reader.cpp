@@ -163,7 +163,7 @@ ParameterList PbrtReader::ReadParameters() {
 ParameterList PbrtReader::ReadParameters(AttributeTarget defaults) {
   ParameterList parameters = ReadParameters();
   const auto& attributes = state_.Now().attributes[static_cast<std::size_t>(defaults)];
-  if (attributes) parameters.AddDefaults(*attributes);
+  if (attributes) AddDefaults(*attributes, &parameters);
   return parameters;
 }
 
@@ -260,15 +260,17 @@ int PbrtReader::MaterialBehind(int material) const {
   return index;
 }
 
+void PbrtReader::FailUnknownObject(const std::string& name, const FileLocation& location) const {
+  std::vector<std::string> known;
+  for (const ObjectDefinition& object : scene_.objects) known.push_back(object.name);
+  throw Error(location, fmt::format("no object is named {}{}", Quoted(name), DidYouMean(name, known)));
+}
+
 void PbrtReader::ResolvePending() {
   for (const auto& pending : pendingInstances_) {
     InstanceDescription& instance = scene_.instances[pending.instance];
-    std::vector<std::string> names;
-    for (const ObjectDefinition& object : scene_.objects) names.push_back(object.name);
     const auto found = objects_.find(pending.name);
-    if (found == objects_.end())
-      throw Error(instance.location,
-                  fmt::format("no object is named {}{}", Quoted(pending.name), DidYouMean(pending.name, names)));
+    if (found == objects_.end()) FailUnknownObject(pending.name, instance.location);
     instance.object = found->second;
   }
   const auto resolve = [&](std::vector<ShapeDescription>& shapes) {

@@ -69,6 +69,10 @@ class PbrtReader {
   std::array<double, count> ReadNumbers();
   ParameterList ReadParameters();
   ParameterList ReadParameters(AttributeTarget defaults);
+  /// As `ParameterList::AddDefaults`. Throws Error where all that is inherited takes too much memory.
+  void AddDefaults(const ParameterList& defaults, ParameterList* parameters);
+  /// Throws Error where the parameters that `statements` set are too many in all.
+  void CheckCount(const ParameterList& parameters, std::string_view statements) const;
   template <typename Description = Entity>
   Description ReadEntity(std::string_view what, WordKind kind);
 
@@ -129,6 +133,7 @@ class PbrtReader {
   // At the end.
   void ResolvePending();
   int MaterialBehind(int material) const;
+  [[noreturn]] void FailUnknownObject(const std::string& name, const FileLocation& location) const;
 
   PbrtVersionVotes votes_;
   Diagnostics* diagnostics_;
@@ -144,6 +149,7 @@ class PbrtReader {
   std::unordered_map<std::string, int> objects_;
   std::vector<PendingName> pendingMaterials_;
   std::vector<PendingInstance> pendingInstances_;
+  std::size_t inheritedBytes_ = 0;  ///< Of the parameters that `AddDefaults` was given.
 };
 
 template <std::size_t count>

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "src/io/nearest_name.h"
+#include "src/io/pbrt_parameters.h"
 #include "src/io/pbrt_reader.h"
 #include "src/io/text_file.h"
 
@@ -28,6 +29,10 @@ constexpr NamedSpace kRgbSpaces[] = {{"srgb", RgbSpace::Srgb},
                                      {"rec2020", RgbSpace::Rec2020},
                                      {"aces2065-1", RgbSpace::Aces2065_1}};
 
+// Parameters of Attribute statements are copied to each statement that inherits them. They are few: a copy of ten takes
+// 2 KB, some thirty times the text of a small shape.
+constexpr std::size_t kInheritedAnyway = std::size_t{256} << 20, kMostInheritedOfText = 64;
+
 }  // namespace
 
 template <typename Description>
@@ -47,7 +52,8 @@ void PbrtReader::Attribute() {
     if (entry.name != name) continue;
     auto& attributes = state_.Now().attributes[static_cast<std::size_t>(entry.target)];
     ParameterList added = ReadParameters();
-    if (attributes) added.AddDefaults(*attributes);
+    if (attributes) AddDefaults(*attributes, &added);
+    CheckCount(added, "Attribute statements");
     attributes = std::make_shared<const ParameterList>(std::move(added));
     return;
   }
@@ -59,6 +65,22 @@ void PbrtReader::Attribute() {
 void PbrtReader::Option() {
   ParameterList added = ReadParameters();
   for (Parameter& parameter : added.All()) scene_.options.Add(std::move(parameter));
+  CheckCount(scene_.options, "Option statements");
+}
+
+void PbrtReader::CheckCount(const ParameterList& parameters, std::string_view statements) const {
+  if (parameters.All().size() > kMostParameters)
+    throw Error(here_, fmt::format("{} set more than {} parameters", statements, kMostParameters));
+}
+
+void PbrtReader::AddDefaults(const ParameterList& defaults, ParameterList* parameters) {
+  for (const Parameter& parameter : defaults.All()) inheritedBytes_ += MemoryBytes(parameter);
+  const std::size_t most = kInheritedAnyway + kMostInheritedOfText * sources_.BytesRead();
+  if (inheritedBytes_ > most)
+    throw Error(here_, fmt::format("what Attribute statements set takes more than {} MB and {} times the text, for all "
+                                   "those that inherit it",
+                                   kInheritedAnyway >> 20, kMostInheritedOfText));
+  parameters->AddDefaults(defaults);
 }
 
 void PbrtReader::ColorSpace() {

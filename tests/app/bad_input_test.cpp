@@ -126,6 +126,30 @@ TEST_F(BadInput, MixesThatNameMixes) {
                          "bad.pbrt:99941:65: error: mixes name each other more than 64 deep"));
 }
 
+TEST_F(BadInput, AttributesThatAreInheritedByAll) {
+  const auto attribute = [](const std::string& name, const std::string&) {
+    return "Attribute \"shape\" \"float a" + name + "\" 1";
+  };
+  const auto shape = [](const std::string&, const std::string&) { return std::string("Shape \"sphere\""); };
+  EXPECT_TRUE(BeginsWith(WorldError(Lines(10'000, attribute) + Lines(10'000, shape)),
+                         "bad.pbrt:260:1: error: Attribute statements set more than 256 parameters"));
+  std::string numbers;
+  for (int i = 0; i < 500'000; ++i) numbers += " 1";
+  EXPECT_TRUE(Contains(WorldError("Attribute \"shape\" \"float a\" [" + numbers + " ]\n" + Lines(10'000, shape)),
+                       ":1: error: what Attribute statements set takes more than 256 MB and 64 times the text"));
+  EXPECT_TRUE(BeginsWith(ErrorOf(Lines(100'000, [](const std::string& name,
+                                                   const std::string&) { return "Option \"float a" + name + "\" 1"; })),
+                         "bad.pbrt:257:1: error: Option statements set more than 256 parameters"));
+}
+
+TEST_F(BadInput, InstancesBeforeTheirObjects) {
+  const std::string instances =
+      Lines(100'000, [](const std::string& name, const std::string&) { return "ObjectInstance \"o" + name + "\""; });
+  const std::string objects = Lines(
+      99'999, [](const std::string& name, const std::string&) { return "ObjectBegin \"o" + name + "\" ObjectEnd"; });
+  EXPECT_TRUE(BeginsWith(WorldError(instances + objects), "bad.pbrt:100003:1: error: no object is named \"o100000\""));
+}
+
 // Of light that nothing absorbs, and of shadow rays.
 TEST_F(BadInput, WorkWithoutEnd) {
   for (const std::string white : {"\"diffuse\" \"rgb reflectance\" [1 1 1]", "\"dielectric\""}) {
