@@ -5,9 +5,8 @@
 #include <set>
 #include <string_view>
 
-#include <fmt/format.h>
-
 #include "src/base/content_hash.h"
+#include "src/io/scene_use.h"
 
 namespace dapple {
 
@@ -61,6 +60,16 @@ class SceneHasher {
     hash_.Add(items.size());
     for (const T& item : items) Add(item);
   }
+  /// Of those that are not used the statements alone, not the files.
+  template <typename T>
+  void AddAll(const std::vector<T>& items, const std::vector<bool>& isUsed) {
+    hash_.Add(items.size());
+    for (size_t i = 0; i < items.size(); ++i) {
+      opensFiles_ = isUsed[i];
+      Add(items[i]);
+    }
+    opensFiles_ = true;
+  }
 
   /// The picture's name is left out: a file of that name is what the render itself writes.
   void AddFilm(const Entity& film) {
@@ -81,10 +90,12 @@ class SceneHasher {
   }
   void Add(const Parameter& parameter);
   void AddFileOf(const std::string& name, const FileLocation& namedAt);
+  void AddContent(const std::filesystem::path& path);
 
   const SceneDescription& scene_;
   ContentHash hash_;
   std::set<std::string> files_;
+  bool opensFiles_ = true;
 };
 
 void SceneHasher::Add(const Parameter& parameter) {
@@ -112,30 +123,42 @@ void SceneHasher::AddFileOf(const std::string& name, const FileLocation& namedAt
   const std::filesystem::path path = scene_.ResolvePath(name, namedAt);
   if (name.empty() || !std::filesystem::is_regular_file(path, failure)) return;
   files_.insert(path.string());
+  if (opensFiles_) AddContent(path);
+}
+
+// As far as the file can be read: where it is needed the builder tells what is wrong with it. No further than it says
+// that it is long: what says 0, as many do that the system makes while they are read, may have no end.
+void SceneHasher::AddContent(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kBlock = std::uintmax_t{1} << 20;
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(path, failure);
+  if (failure || size == 0) return hash_.AddText("");
   std::ifstream file(path, std::ios::binary);
-  std::string block(size_t{1} << 20, '\0');
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+  std::string block(static_cast<size_t>(std::min(size, kBlock)), '\0');
+  std::uintmax_t left = size;
+  for (std::uintmax_t part = kBlock; part == kBlock && file; left -= part) {
+    part = std::min(left, kBlock);
+    file.read(block.data(), static_cast<std::streamsize>(part));
     hash_.AddText(std::string_view(block).substr(0, static_cast<size_t>(file.gcount())));
   }
-  if (!file.eof()) throw Error(namedAt, fmt::format("cannot read \"{}\"", path.string()));
 }
 
 }  // namespace
 
 SceneContent HashSceneContent(const SceneDescription& scene) {
   SceneHasher hasher(scene);
+  const SceneUse use = FindUse(scene);
   hasher.Add(scene.camera);
   hasher.Add(scene.camera.cameraFromWorld);
   hasher.AddFilm(scene.film);
   hasher.Add(scene.pixelFilter);
   hasher.Add(scene.options);
-  hasher.AddAll(scene.materials);
-  hasher.AddAll(scene.textures);
+  hasher.AddAll(scene.materials, use.materials);
+  hasher.AddAll(scene.textures, use.textures);
   hasher.AddAll(scene.lights);
-  hasher.AddAll(scene.areaLights);
+  hasher.AddAll(scene.areaLights, use.areaLights);
   hasher.AddAll(scene.shapes);
-  hasher.AddAll(scene.objects);
+  hasher.AddAll(scene.objects, use.objects);
   hasher.AddAll(scene.instances);
   hasher.AddNumber(scene.version);
   return hasher.Content();

@@ -271,6 +271,14 @@ TEST_F(BadInput, WhatIsNoFileIsNotRead) {
   }
 }
 
+// This one, as many that the system makes while they are read, is of no size and cannot be read from its beginning.
+TEST_F(BadInput, WhatIsNotUsedIsNotOpened) {
+  const std::string texture = "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"/proc/self/mem\"\n";
+  EXPECT_EQ(WarningsOf(kWorld + texture + "Shape \"sphere\""), "");
+  EXPECT_TRUE(BeginsWith(WorldError(texture + "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\""),
+                         "bad.pbrt:4:35: error: "));
+}
+
 // A mesh of a quarter million triangles, with memory that runs out in the reader, when Embree starts and while it
 // builds.
 TEST_F(BadInput, ASceneThatTheMemoryDoesNotHold) {

@@ -1,19 +1,21 @@
 #include "src/io/scene_hash.h"
 
-#include <fstream>
 #include <map>
 
 #include <gtest/gtest.h>
 
 #include "src/io/pbrt_parser.h"
+#include "tests/image/temporary_folder.h"
 
 namespace dapple {
 namespace {
 
-std::string HashOf(const std::string& text) {
+SceneContent ContentOf(const std::string& text, const std::string& folder = "") {
   Diagnostics diagnostics([](const std::string& line) { ADD_FAILURE() << line; });
-  return HashSceneContent(ParsePbrtString(text, "test.pbrt", testing::TempDir(), {.pbrtVersion = 3}, diagnostics)).hash;
+  return HashSceneContent(ParsePbrtString(text, "test.pbrt", folder, {.pbrtVersion = 3}, diagnostics));
 }
+
+std::string HashOf(const std::string& text) { return ContentOf(text).hash; }
 
 constexpr const char* kScene =
     "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n"
@@ -59,8 +61,7 @@ TEST(SceneHash, DoesNotCareForWhatThePictureDoesNotFollowFrom) {
 TEST(SceneHash, SamplingOfEnvironmentsIsToldApart) {
   const auto parse = [](const std::string& lights) {
     Diagnostics diagnostics([](const std::string& line) { ADD_FAILURE() << line; });
-    return ParsePbrtString("WorldBegin\n" + lights + "\nWorldEnd\n", "test.pbrt", testing::TempDir(),
-                           {.pbrtVersion = 3}, diagnostics);
+    return ParsePbrtString("WorldBegin\n" + lights + "\nWorldEnd\n", "test.pbrt", "", {.pbrtVersion = 3}, diagnostics);
   };
   const std::string sky = "LightSource \"infinite\" \"string mapname\" \"sky.exr\" ";
   const std::string cosine = "\"string sampling\" \"cosine\"\n";
@@ -71,23 +72,58 @@ TEST(SceneHash, SamplingOfEnvironmentsIsToldApart) {
   EXPECT_EQ(DescribeEnvironmentSampling(parse("LightSource \"point\"")), "none");
 }
 
-TEST(SceneHash, HoldsTheContentOfFiles) {
-  const std::string text =
-      Changed("Material", "Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"hashed.png\"\nMaterial");
-  const auto write = [](const std::string& content) {
-    std::ofstream(testing::TempDir() + "/hashed.png", std::ios::binary) << content;
+/// Whether the hash of a scene with `statements`, which name "hashed.png", follows from what is in that file.
+bool FollowsFromTheFile(const std::string& statements) {
+  const TemporaryFolder folder;
+  const std::string text = Changed("Material", statements + "\nMaterial");
+  const auto hash = [&](const std::string& content) {
+    const std::string path = folder.Write("hashed.png", content);
+    const SceneContent scene = ContentOf(text, std::filesystem::path(path).parent_path().string());
+    EXPECT_EQ(scene.files, std::vector<std::string>{path}) << statements;
+    return scene.hash;
   };
-  write("one");
-  const std::string one = HashOf(text);
-  write("two");
-  const std::string two = HashOf(text);
-  write(std::string(3 << 20, 'a'));
-  const std::string large = HashOf(text);
-  write(std::string((3 << 20) - 1, 'a') + 'b');
-  EXPECT_NE(one, two);
-  EXPECT_NE(large, HashOf(text));
-  write("one");
-  EXPECT_EQ(HashOf(text), one);
+  const std::string one = hash("one"), two = hash("two");
+  const std::string large = hash(std::string(3 << 20, 'a')), otherEnd = hash(std::string((3 << 20) - 1, 'a') + 'b');
+  EXPECT_EQ(hash("one"), one) << statements;
+  EXPECT_EQ(one == two, large == otherEnd) << statements;
+  return one != two;
+}
+
+const std::string kTexture = "Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"hashed.png\"\n";
+const std::string kMatte = "\"string type\" \"matte\" \"texture Kd\" \"t\"\n";
+const std::string kMesh = "Shape \"plymesh\" \"string filename\" \"hashed.png\"\n";
+
+TEST(SceneHash, HoldsTheContentOfFilesThatAreUsed) {
+  const std::string sphere = "Shape \"sphere\"\n", named = "MakeNamedMaterial \"a\" " + kMatte;
+  for (const std::string& statements :
+       {kMesh, std::string("LightSource \"infinite\" \"string mapname\" \"hashed.png\""),
+        kTexture + "Material \"matte\" \"texture Kd\" \"t\"\n" + sphere,
+        kTexture + named + "NamedMaterial \"a\"\n" + sphere,
+        kTexture +
+            "Texture \"u\" \"color\" \"scale\" \"texture tex1\" \"t\"\nMaterial \"matte\" \"texture Kd\" \"u\"\n" +
+            sphere,
+        kTexture + named +
+            "MakeNamedMaterial \"b\" \"string type\" \"mix\" \"string namedmaterial1\" \"a\"\n"
+            "Material \"mix\" \"string namedmaterial2\" \"b\"\n" +
+            sphere,
+        "ObjectBegin \"o\"\n" + kMesh + "ObjectEnd\nObjectInstance \"o\""})
+    EXPECT_TRUE(FollowsFromTheFile(statements)) << statements;
+}
+
+// They are not opened, and the builder does not look at them either.
+TEST(SceneHash, DoesNotHoldTheContentOfFilesThatAreNotUsed) {
+  for (const std::string& statements :
+       {kTexture, kTexture + "Material \"matte\" \"texture Kd\" \"t\"", kTexture + "MakeNamedMaterial \"a\" " + kMatte,
+        kTexture + "Texture \"u\" \"color\" \"scale\" \"texture tex1\" \"t\"",
+        "ObjectBegin \"o\"\n" + kMesh + "ObjectEnd"})
+    EXPECT_FALSE(FollowsFromTheFile(statements)) << statements;
+}
+
+// The builder tells where such a file is needed.
+TEST(SceneHash, LeavesFilesThatCannotBeRead) {
+  const std::string statement = "LightSource \"infinite\" \"string mapname\" ";
+  for (const char* file : {"\"/proc/self/mem\"", "\"/dev/zero\"", "\"/\""})
+    EXPECT_NE(HashOf(Changed("Material", statement + file + "\nMaterial")), HashOf(kScene)) << file;
 }
 
 }  // namespace
