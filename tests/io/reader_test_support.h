@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include <zlib.h>
 
 #include "src/base/error.h"
+#include "tests/image/temporary_folder.h"
 
 namespace dapple {
 
@@ -34,29 +34,16 @@ struct WarningList {
 /// An empty folder that goes away with the object.
 class TestFolder {
  public:
-  TestFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) /
-            ("dapple_" + std::string(test->test_suite_name()) + "_" + test->name());
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-
-  const std::filesystem::path& Path() const { return path_; }
+  std::filesystem::path Path() const { return std::filesystem::path(folder_.Path("file")).parent_path(); }
 
   /// Writes a file (its folders too) and gives its path.
   std::filesystem::path Write(const std::string& name, const std::string& bytes) const {
-    const std::filesystem::path path = path_ / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::binary) << bytes;
-    return path;
+    std::filesystem::create_directories(std::filesystem::path(folder_.Path(name)).parent_path());
+    return folder_.Write(name, bytes);
   }
 
  private:
-  std::filesystem::path path_;
+  TemporaryFolder folder_;
 };
 
 /// One gzip member.

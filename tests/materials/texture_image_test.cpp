@@ -1,6 +1,5 @@
 // Textures from images: orientation, filters, wrapping at every seam, scalars, and the cache.
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 
 #include "src/base/numerics.h"
 #include "src/materials/image_texture.h"
+#include "tests/image/temporary_folder.h"
 
 namespace dapple {
 namespace {
@@ -180,9 +180,8 @@ TEST(ImageTexture, EmptyImageIsAnError) {
 
 class ImageCacheTest : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
-
-  const std::string path_ = testing::TempDir() + "image_cache_test.img";
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.Path("a.img");
   std::vector<std::string> warnings_;
   Diagnostics diagnostics_{[this](const std::string& line) { warnings_.push_back(line); }};
   ImageCache cache_{&diagnostics_};
