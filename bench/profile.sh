@@ -11,7 +11,8 @@ perf record --quiet --output "$data" --freq 800 "$@"
 perf report --input "$data" --sort dso,sym 2> /dev/null | awk '
   function kind(name) {
     if (name ~ /ForEachLightPath/) return "walks from the lights"
-    if (name ~ /embree|Accelerator|Intersect|TriangleMesh::(Interact|Corners|PointError|Fill)|Sphere::[^S]|Quadric|FirstAccepted|IsTraceable|MaterialAt|Unoccluded|ShadowRay|nextafter|atan2/) return "rays"
+    if (name ~ /embree/) return "Embree"
+    if (name ~ /Accelerator|Intersect|TriangleMesh::(Interact|Corners|PointError|Fill)|Sphere::[^S]|Quadric|FirstAccepted|IsTraceable|MaterialAt|Unoccluded|ShadowRay|nextafter|atan2/) return "intersections beside Embree"
     if (name ~ /PassOn|::Gather|::Merge|GatherRadius::(At|KeyOf)|InverseCoverage|IsOnSameSurface/) return "gathering"
     if (name ~ /Bsdf|Material|Lobe|Light|Distribution|Spherical|Emission|SampleCosine|SampleArea|SampleSolid|SampleAt|FindCell|PointInCell|variant|Fresnel|sincos|__sin_|__cos|EmittedAlong|SampleDirect|SampleDisk/) return "shading and lights"
     if (name ~ /Sampler/) return "random numbers"

@@ -16,6 +16,7 @@
 #include "integrators/non_finite.h"
 #include "src/image/film.h"
 #include "src/photons/kernel.h"
+#include "src/photons/pilot_use.h"
 #include "src/scene/scene.h"
 
 namespace dapple {
@@ -41,8 +42,8 @@ struct PassStats {
 
 /// What `Prepare` needed beside the scene.
 struct PreparationUse {
-  TableUse tables;         ///< of what pilots learned
-  int64_t pilotPaths = 0;  ///< light paths that they began
+  TableUse tables;  ///< of what pilots learned
+  PilotUse pilots;  ///< what these traced
 };
 
 /// About what a pass does and takes, told before anything is prepared.
@@ -51,6 +52,7 @@ struct PassForecast {
   int64_t lightPaths = 0;  ///< without what a pilot would learn: at most a factor of two off or so
   bool storesPhotons = false;
   int64_t pilotBytes = 0;  ///< that preparation takes at most
+  PilotUse pilot{};        ///< what it took to tell this
 };
 
 /// Whose directions find direct light where a camera path scatters. Light of delta lights is sampled in any case.

@@ -17,7 +17,7 @@ void LightTracingIntegrator::Prepare(const Scene& scene, uint64_t seed) {
 
 PreparationUse LightTracingIntegrator::Preparation() const {
   const EmissionGuide& guide = emission_->Guide();
-  return {TableUse::Of(guide.MemoryBytes()), guide.PilotPhotons()};
+  return {TableUse::Of(guide.MemoryBytes()), guide.Pilot()};
 }
 
 PassForecast LightTracingIntegrator::Forecast(const Scene& scene, uint64_t) const {

@@ -19,7 +19,7 @@ class PathIntegrator final : public Integrator {
     return {.cameraSamples = options_.cameraSamples.value_or(1)};
   }
   PassStats RenderPass(int pass, Film& film) const override;
-  PreparationUse Preparation() const override { return {samples_.Table(), 0}; }
+  PreparationUse Preparation() const override { return {samples_.Table(), {0, samples_.PilotRays()}}; }
   int DefaultPasses() const override { return 64; }
 
   /// What one path brings back from where it is, along its ray; once prepared. Uses the blocks of the sampler after 0.

@@ -32,10 +32,10 @@ PreparationUse PhotonGatherer::Preparation() const {
   PreparationUse use = plan_->Use();
   if (causticRadius_) {
     use.tables += TableUse::Of(causticRadius_->MemoryBytes());
-    use.pilotPaths += causticRadius_->PilotPaths();
+    use.pilots += causticRadius_->Pilot();
   }
   use.tables += TableUse::Of(gatherGuide_.MemoryBytes());
-  use.pilotPaths += gatherGuide_.PilotPaths();
+  use.pilots += gatherGuide_.Pilot();
   return use;
 }
 

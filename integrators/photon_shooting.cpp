@@ -77,6 +77,7 @@ PassForecast ForecastPhotonPass(const Scene& scene, const IntegratorOptions& opt
   const PassSize size = SizeOfPass(scene, options, work);
   forecast.lightPaths = size.lightPaths;
   forecast.cameraSamples = size.cameraSamples;
+  forecast.pilot = work.pilot;
   forecast.storesPhotons = true;
   forecast.pilotBytes = finalGathers > 0 ? kPilotBytesOfFinalGather : kPilotBytes;
   if (options.guideEmission) forecast.pilotBytes += EmissionPilotBytes(scene);
@@ -92,12 +93,12 @@ PhotonPlan::PhotonPlan(const Scene& scene, const IntegratorOptions& options, con
   paths = size.lightPaths;
   cameraSamples = size.cameraSamples;
   radius = RadiusOf(scene, emission, paths, options, false, use.forecastsPhotons, seed);
-  pilotPaths = emission.Guide().PilotPhotons() + work.lightPaths + radius.PilotPaths();
+  pilots = emission.Guide().Pilot() + work.pilot + radius.Pilot();
 }
 
 PreparationUse PhotonPlan::Use() const {
   if (!isNeeded) return {};
-  return {TableUse::Of(emission.Guide().MemoryBytes()) + TableUse::Of(radius.MemoryBytes()), pilotPaths};
+  return {TableUse::Of(emission.Guide().MemoryBytes()) + TableUse::Of(radius.MemoryBytes()), pilots};
 }
 
 GatherRadius CausticRadius(const PhotonPlan& plan, const Scene& scene, const IntegratorOptions& options,

@@ -42,9 +42,9 @@ struct PhotonPlan {
   bool isNeeded;
   EmissionSampler emission;
   int64_t paths = 1;
-  int cameraSamples = 1;   ///< camera paths a pixel and pass
-  GatherRadius radius;     ///< of all photons
-  int64_t pilotPaths = 0;  ///< light paths of all pilots
+  int cameraSamples = 1;  ///< camera paths a pixel and pass
+  GatherRadius radius;    ///< of all photons
+  PilotUse pilots;
 };
 
 /// The same for photons that met nothing but specular surfaces.

@@ -22,6 +22,7 @@ struct Place {
   SurfaceInteraction hit;
   Color throughput{1};
   float reach = 0;       // a pixel of the grid there
+  int64_t rays = 0;      // that told all this
   double mergeArea = 0;  // of a gather in a pixel of the picture
 };
 
@@ -69,6 +70,7 @@ void FindSurface(const Scene& scene, const CameraRay& camera, float pixels, Samp
   Ray ray = camera.ray;
   float distance = 0;
   for (int bounce = 1; bounce <= kMostBounces;) {
+    ++place->rays;
     const std::optional<SurfaceInteraction> hit = scene.Intersect(ray);
     if (!hit) return;
     distance += hit->t;
@@ -107,9 +109,9 @@ std::vector<Place> LookFromCamera(const Scene& scene, const IntegratorOptions& o
             rows = std::max(1, static_cast<int>(resolution.y / step));
   std::vector<Place> places(static_cast<size_t>(columns) * static_cast<size_t>(rows));
   ParallelForChunks(static_cast<int64_t>(places.size()), 16, [&](int64_t begin, int64_t end) {
-    PassStats stats;
     for (int64_t i = begin; i < end; ++i) {
       Place& place = places[static_cast<size_t>(i)];
+      PassStats stats;
       const Vec2i cell(static_cast<int>(i) % columns, static_cast<int>(i) / columns);
       CommonLight common;
       for (int k = 0; k < kPathsPerPixel; ++k) {
@@ -122,6 +124,7 @@ std::vector<Place> LookFromCamera(const Scene& scene, const IntegratorOptions& o
         if (k == 0) FindSurface(scene, camera, static_cast<float>(step), sampler, &place);
         common.Add(static_cast<double>(paths.Radiance(CameraWalk(camera.ray), sampler, stats).Average()));
       }
+      place.rays += stats.Rays();
       place.radiance = common.Mean();
       place.variance = common.Variance();
     }
@@ -182,29 +185,38 @@ void Arrive(const std::vector<Place>& places, const PlaceMap& map, const LightVe
   });
 }
 
+/// Adds what it traces to `*pilot`.
 std::vector<Arrivals> ShootLight(const Scene& scene, const IntegratorOptions& options, uint64_t seed,
-                                 const std::vector<Place>& places, const PlaceMap& map, double darkest) {
+                                 const std::vector<Place>& places, const PlaceMap& map, double darkest,
+                                 PilotUse* pilot) {
   constexpr uint64_t kShooting = 5;
   const EmissionSampler emission(scene, GuideOf(scene, options, 0, seed));
-  const auto lightPaths = static_cast<double>(ForecastPhotonPass(scene, options, 0, seed).lightPaths);
+  const PassForecast forecast = ForecastPhotonPass(scene, options, 0, seed);
+  const auto lightPaths = static_cast<double>(forecast.lightPaths);
   const auto noMerging = [](const Vec3&) { return MergeSite(); };
-  using Chunk = std::vector<Arrivals>;
-  const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(
+  struct Chunk {
+    std::vector<Arrivals> arrivals;
+    int64_t rays = 0;
+  };
+  std::vector<Arrivals> sums(places.size());
+  *pilot += forecast.pilot + PilotUse{kRareLightPaths, 0};
+  ForEachLightPath<Chunk>(
       emission, Hash(seed, kShooting), 0, kRareLightPaths,
       [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
-        chunk.resize(places.size());
+        chunk.arrivals.resize(places.size());
         LightWalk walk(scene, options.direct, emitted, noMerging);
         const auto visit = [&](const LightVertex& vertex) {
           const double paths = walk.Arrive(vertex).paths;
           if (vertex.scattered > 0 && !vertex.bsdf.IsPurelySpecular())
-            Arrive(places, map, vertex, paths, lightPaths, darkest, &chunk);
+            Arrive(places, map, vertex, paths, lightPaths, darkest, &chunk.arrivals);
         };
-        TraceLightPath(scene, emitted, sampler, options.maxDepth, visit,
-                       [&](const LightVertex& vertex, const BsdfSample& next) { walk.Scatter(vertex, next); });
+        const auto scatter = [&](const LightVertex& vertex, const BsdfSample& next) { walk.Scatter(vertex, next); };
+        chunk.rays += TraceLightPath(scene, emitted, sampler, options.maxDepth, visit, scatter).segments;
+      },
+      [&](const Chunk& chunk) {
+        for (size_t i = 0; i < chunk.arrivals.size(); ++i) sums[i] += chunk.arrivals[i];
+        pilot->rays += chunk.rays;
       });
-  std::vector<Arrivals> sums(places.size());
-  for (const Chunk& chunk : chunks)
-    for (size_t i = 0; i < chunk.size(); ++i) sums[i] += chunk[i];
   return sums;
 }
 
@@ -224,8 +236,12 @@ RareLight FindRareLight(const Scene& scene, const IntegratorOptions& options, ui
   constexpr double kDark = 0.1;
   const double count = static_cast<double>(places.size());
   double mean = 0;
-  for (const Place& place : places) mean += place.radiance / count;
-  const std::vector<Arrivals> arrivals = ShootLight(scene, options, seed, places, map, kDark * mean);
+  RareLight result;
+  for (const Place& place : places) {
+    mean += place.radiance / count;
+    result.pilot.rays += place.rays;
+  }
+  const std::vector<Arrivals> arrivals = ShootLight(scene, options, seed, places, map, kDark * mean, &result.pilot);
 
   std::vector<double> light(places.size());
   double rareMean = 0, lostMean = 0;
@@ -236,7 +252,6 @@ RareLight FindRareLight(const Scene& scene, const IntegratorOptions& options, ui
     rareMean += light[i] / count;
     lostMean += arrivals[i].lost / perRadiance / count;
   }
-  RareLight result;
   if (!(mean + rareMean > 0)) return result;
   result.share = rareMean / (mean + rareMean);
   result.lostShare = lostMean / (mean + rareMean);

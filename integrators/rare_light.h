@@ -23,6 +23,8 @@ struct RareLight {
   double rareNoise = 0;    ///< by path tracing, of the rest
   double photonNoise = 0;  ///< of the rest, where photons of a pass are gathered too
 
+  PilotUse pilot;  ///< that found out
+
   /// By how much photons lower the variance of a picture of as many passes: from 1 to `kMostGain`.
   double Gain() const;
   static constexpr double kMostGain = 1e6;

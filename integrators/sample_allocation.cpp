@@ -35,7 +35,7 @@ double Median(std::vector<double> values) {
 /// What the paths of a probe found, and what they took.
 struct Probe {
   Vec3d mean{0}, variance{0};
-  double rays = 0;
+  int64_t rays = 0;
 };
 
 Probe ProbeAt(const Scene& scene, uint64_t seed, const Vec2i& pixel, const SampleAllocation::Tracer& trace) {
@@ -51,7 +51,7 @@ Probe ProbeAt(const Scene& scene, uint64_t seed, const Vec2i& pixel, const Sampl
   Probe probe;
   probe.mean = (halves[0] + halves[1]) / 2;
   for (int c = 0; c < 3; ++c) probe.variance[c] = Sqr(halves[0][c] - halves[1][c]) / 2;
-  probe.rays = static_cast<double>(stats.Rays());
+  probe.rays = stats.Rays();
   return probe;
 }
 
@@ -119,7 +119,8 @@ SampleAllocation SampleAllocation::ByNoise(const Scene& scene, uint64_t seed, in
   const double dark = kDark * Median(std::move(brightness));
   for (size_t i = 0; i < found.size(); ++i) {
     variance.values[i] = RelativeVariance(found[i], dark);
-    rays.values[i] = found[i].rays;
+    rays.values[i] = static_cast<double>(found[i].rays);
+    result.pilotRays_ += found[i].rays;
   }
   // Of so few paths a variance is known badly: from all within two cells it is known well enough.
   variance = Smoothed(Smoothed(variance));

@@ -31,11 +31,14 @@ class SampleAllocation {
 
   /// Camera paths through a pixel of the picture in a pass.
   int At(const Vec2i& pixel) const;
+  /// Of the pilot; 0 without one.
+  int64_t PilotRays() const { return pilotRays_; }
   /// None where the number is the same everywhere.
   TableUse Table() const { return TableUse::Of(static_cast<int64_t>(samples_.size() * sizeof(float))); }
 
  private:
   int mean_;
+  int64_t pilotRays_ = 0;
   int cellSize_ = 1, columns_ = 0;  // cells are squares of so many pixels a side
   std::vector<float> samples_;      // of each cell, in the mean of its pixels; empty: `mean_`
 };

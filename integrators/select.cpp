@@ -37,12 +37,12 @@ std::string_view WhyPathsFindAll(const SceneFacts& facts, int maxDepth) {
 /// As many rays a pass as so many camera paths a pixel take: quiet places then have a quarter of the mean at least.
 constexpr int kCameraSamples = 4;
 
-IntegratorChoice ChoosePath(std::string_view reason, const IntegratorOptions& options, int64_t pilotPaths = 0) {
+IntegratorChoice ChoosePath(std::string_view reason, const IntegratorOptions& options, const PilotUse& pilots = {}) {
   const int samples = options.cameraSamples.value_or(kCameraSamples);
   return {"path",
           fmt::format("{}; a pass takes as long as {} camera paths a pixel, of which noisy places get more", reason,
                       samples),
-          nullptr, samples, pilotPaths};
+          nullptr, samples, pilots};
 }
 
 /// As few digits as tell.
@@ -69,14 +69,14 @@ IntegratorChoice SelectIntegrator(const Scene& scene, const IntegratorOptions& o
   guided.guide = std::make_shared<const EmissionGuide>(GuideOf(scene, options, 0, seed));
   const RareLight rare = FindRareLight(scene, guided, seed);
   const std::string finding = Finding(rare);
-  const int64_t withGuide = kRareLightPaths + guided.guide->PilotPhotons();
+  const PilotUse withGuide = rare.pilot + guided.guide->Pilot();
   if (rare.share == 0)
     return ChoosePath("a pilot of light paths met no light that paths find seldom", options, withGuide);
   if (rare.lostShare == 0 && rare.Gain() < kCostOfPhotons)
     return ChoosePath(finding + ", less than they cost", options, withGuide);
   if (options.direct.technique != DirectTechnique::Mis)
-    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}, kRareLightPaths};
-  return {"hybrid", finding, guided.guide, {}, kRareLightPaths};
+    return {"sppm", finding + "; direct light is asked for by one technique alone", guided.guide, {}, rare.pilot};
+  return {"hybrid", finding, guided.guide, {}, rare.pilot};
 }
 
 bool IsLeftToDapple(std::string_view requested, std::string_view fromScene) {

@@ -18,7 +18,7 @@ struct IntegratorChoice {
   /// What goes into `IntegratorOptions`, beside what the user has said.
   std::shared_ptr<const EmissionGuide> guide;  ///< what a pilot learned on the way; or null
   std::optional<int> cameraSamples;
-  int64_t pilotPaths = 0;  ///< light paths that looked for rare light or taught a guide that is not handed on
+  PilotUse pilots{};  ///< those that looked for rare light or taught a guide that is not handed on
 };
 
 /// "path", with more camera paths in noisy places, where what the scene holds makes no light that paths find seldom;

@@ -93,11 +93,13 @@ void PrintNeeds(const Scene& scene, const PassForecast& forecast, int64_t loaded
                             FormatBytes(static_cast<double>(loadedBytes))));
 }
 
-void PrintSkips(const Scene& scene, const PassForecast& forecast) {
+void PrintSkips(const Scene& scene, const Integrator& integrator, const PassForecast& forecast) {
   const SceneFacts& facts = scene.Facts();
   std::vector<std::string> skips;
   if (forecast.lightPaths == 0)
-    skips.emplace_back("photons and photon maps: the algorithm follows paths from the camera only");
+    skips.push_back(fmt::format("photons and photon maps: {}",
+                                integrator.EstimatesDensity() ? "none could come to anything here"
+                                                              : "the algorithm follows paths from the camera only"));
   if (facts.blackLights > 0) {
     skips.push_back(fmt::format("{} that emit nothing", FormatNumberOf(facts.blackLights, "light", "lights")));
   }
@@ -121,7 +123,7 @@ int RunInfo(const SceneOptions& options) {
   PrintContents(*loaded.scene);
   PrintPlan(*loaded.scene, plan);
   PrintNeeds(*loaded.scene, forecast, loadedBytes);
-  PrintSkips(*loaded.scene, forecast);
+  PrintSkips(*loaded.scene, *plan.integrator, forecast);
   return kExitSuccess;
 }
 

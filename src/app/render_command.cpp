@@ -354,7 +354,7 @@ int RunRender(RenderOptions options) {
     return Fail(error, *film, checkpoint);
   }
   RenderNeeds needs{scene.Resources(), plan.integrator->Preparation()};
-  needs.preparation.pilotPaths += plan.choice.pilotPaths;
+  needs.preparation.pilots += plan.choice.pilots;
   return Finish(options, origin, result, needs, *film, signals.Signal(), checkpoint);
 }
 

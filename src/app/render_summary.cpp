@@ -28,13 +28,14 @@ std::string PassesLine(const RenderResult& result, const Film& film) {
 
 std::string WorkLines(const RenderResult& result, const RenderNeeds& needs) {
   const PassStats& stats = result.stats;
-  std::string text = fmt::format("rays      {} ({}): {} camera, {} shadow, {} photon, {} probe\n", Count(stats.Rays()),
-                                 Rate(stats.Rays(), result.seconds), Count(stats.cameraRays), Count(stats.shadowRays),
-                                 Count(stats.photonRays), Count(stats.probeRays));
-  if (stats.photonsEmitted > 0 || needs.preparation.pilotPaths > 0) {
+  std::string text = fmt::format("rays      {} ({}): {} camera, {} shadow, {} photon, {} probe; {} more in pilots\n",
+                                 Count(stats.Rays()), Rate(stats.Rays(), result.seconds), Count(stats.cameraRays),
+                                 Count(stats.shadowRays), Count(stats.photonRays), Count(stats.probeRays),
+                                 Count(needs.preparation.pilots.rays));
+  if (stats.photonsEmitted > 0 || needs.preparation.pilots.lightPaths > 0) {
     text += fmt::format("photons   {} emitted ({}), {} stored; {} more in pilots\n", Count(stats.photonsEmitted),
                         Rate(stats.photonsEmitted, result.seconds), Count(stats.photonsStored),
-                        Count(needs.preparation.pilotPaths));
+                        Count(needs.preparation.pilots.lightPaths));
   }
   if (stats.gathers > 0) {
     text += fmt::format("gathers   {}, {:.3g} photons each\n", Count(stats.gathers),

@@ -59,8 +59,8 @@ bool HasCells(const Distribution2D& table) { return table.Height() > 0; }
 
 }  // namespace
 
-EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot)
-    : pilotPhotons_(static_cast<int64_t>(pilot.size())) {
+EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot, int64_t cameraRays)
+    : pilot_{static_cast<int64_t>(pilot.size()), cameraRays} {
   struct Learned {
     Histogram position, direction;
     double emitted = 0, useful = 0;
@@ -69,6 +69,7 @@ EmissionGuide::EmissionGuide(std::span<const double> power, std::span<const Pilo
   std::vector<Learned> learned(power.size());
   for (const size_t light : GuidedLights(power.size(), pilot)) learned[light].isGuided = true;
   for (const PilotPhoton& photon : pilot) {
+    pilot_.rays += photon.rays;
     if (photon.light < 0) continue;
     Learned& light = learned[static_cast<size_t>(photon.light)];
     light.emitted += 1;

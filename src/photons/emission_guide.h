@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "lights/light.h"
+#include "src/photons/pilot_use.h"
 #include "src/sampling/distribution.h"
 
 namespace dapple {
@@ -26,14 +27,16 @@ struct PilotPhoton {
   Vec2d position{0, 0}, direction{0, 0};  ///< the light's own random numbers
   bool deltaPos = false, deltaDir = false;
   double weight = 0;  ///< how often it was of use, over the density with which the cube was drawn
+  int rays = 0;       ///< that it took
 };
 
 class EmissionGuide {
  public:
   /// Bends nothing; lights are chosen by power.
   EmissionGuide() = default;
-  /// `power`: of each light, not negative. `pilot` holds all photons of the pilot, useful or not.
-  EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot);
+  /// `power`: of each light, not negative. `pilot` holds all photons of the pilot, useful or not; `cameraRays` is what
+  /// else it traced.
+  EmissionGuide(std::span<const double> power, std::span<const PilotPhoton> pilot, int64_t cameraRays = 0);
 
   bool IsEmpty() const { return lights_.empty(); }
 
@@ -60,8 +63,8 @@ class EmissionGuide {
   int64_t MemoryBytes() const;
   /// What a guide of so many lights takes at most; while it learns it takes as much again.
   static int64_t MostMemoryBytes(int64_t lights);
-  /// Of the pilot that taught it; 0 without one.
-  int64_t PilotPhotons() const { return pilotPhotons_; }
+  /// Of the pilot that taught it; none without one.
+  const PilotUse& Pilot() const { return pilot_; }
 
  private:
   struct LightTables {
@@ -70,7 +73,7 @@ class EmissionGuide {
 
   std::vector<LightTables> lights_;
   Distribution1D byUse_;
-  int64_t pilotPhotons_ = 0;
+  PilotUse pilot_;
 };
 
 }  // namespace dapple

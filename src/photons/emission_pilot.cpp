@@ -27,6 +27,7 @@ struct VisiblePoint {
 struct VisiblePoints {
   PhotonMap<VisiblePoint> map;
   float maxReach = 0;
+  int64_t rays = 0;  ///< that found them
 
   /// Whether light that comes from `hit.wo` arrives near one of them, on a surface that lies like theirs and on a side
   /// that they are seen from.
@@ -47,8 +48,9 @@ VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t s
   constexpr int kPaths = 8192;
   std::vector<Vec3> positions;
   std::vector<VisiblePoint> points;
+  int64_t rays = 0;
   const double step = ForEachPilotRay(scene, kPaths, seed, [&](const CameraRay& camera, Sampler& sampler) {
-    FollowCameraPath(
+    rays += FollowCameraPath(
         scene, camera, finalGathers, sampler, [&](const SurfaceInteraction& hit, const Bsdf& bsdf, float distance) {
           positions.push_back(hit.p);
           // What lies between this point and those of the next paths, seen at a slant; in pixels first.
@@ -65,6 +67,7 @@ VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t s
   const auto middle = reaches.begin() + static_cast<ptrdiff_t>(reaches.size() / 2);
   std::nth_element(reaches.begin(), middle, reaches.end());
   VisiblePoints visible;
+  visible.rays = rays;
   for (VisiblePoint& point : points) {
     point.reach = std::min(point.reach, 4 * *middle) * static_cast<float>(step);
     visible.maxReach = std::max(visible.maxReach, point.reach);
@@ -74,7 +77,7 @@ VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t s
 }
 
 /// Whether the picture, or what a crop leaves out of it, shows the vertex.
-bool IsInPicture(const Scene& scene, const LightVertex& vertex) {
+bool IsInPicture(const Scene& scene, const LightVertex& vertex, int* rays) {
   const std::optional<WiSample> join = scene.GetCamera().Sample_Wi(vertex.hit.p, Vec2d(0.5));
   if (!join) return false;
   const Vec2& film = join->film;
@@ -83,25 +86,34 @@ bool IsInPicture(const Scene& scene, const LightVertex& vertex) {
         film.y < static_cast<float>(resolution.y)))
     return false;
   if (vertex.bsdf.Eval(vertex.hit.wo, join->wi, TransportMode::Importance).IsBlack()) return false;
+  ++*rays;
   return scene.Unoccluded(SpawnRayTo(vertex.hit, join->lens, 0, Vec3(0)));
 }
 
-/// `isUseful(const LightVertex&)` says whether a light path comes to something where it meets a surface that is not
-/// purely specular.
+/// `isUseful(const LightVertex&, int* rays)` says whether a light path comes to something where it meets a surface that
+/// is not purely specular, and counts what it traces to know.
 template <typename IsUseful>
 PilotPhoton TracePilotPhoton(const Scene& scene, const EmissionSampler& emission, Sampler sampler, int maxDepth,
                              const IsUseful& isUseful) {
   const std::optional<EmissionSample> emitted = EmitPhoton(emission, sampler);
   if (!emitted) return {};
-  int useful = 0;
-  TraceLightPath(scene, *emitted, sampler, maxDepth,
-                 [&](const LightVertex& vertex) { useful += !vertex.bsdf.IsPurelySpecular() && isUseful(vertex); });
-  return {emitted->light,       emitted->own.position, emitted->own.direction,
-          emitted->le.deltaPos, emitted->le.deltaDir,  useful / emitted->bend};
+  int useful = 0, rays = 0;
+  const auto visit = [&](const LightVertex& vertex) {
+    useful += !vertex.bsdf.IsPurelySpecular() && isUseful(vertex, &rays);
+  };
+  rays += TraceLightPath(scene, *emitted, sampler, maxDepth, visit).segments;
+  return {emitted->light,
+          emitted->own.position,
+          emitted->own.direction,
+          emitted->le.deltaPos,
+          emitted->le.deltaDir,
+          useful / emitted->bend,
+          rays};
 }
 
+/// `cameraRays`: that were traced to know what is useful.
 template <typename IsUseful>
-EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUseful& isUseful) {
+EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, int64_t cameraRays, const IsUseful& isUseful) {
   std::vector<double> power;
   for (const auto& light : scene.Lights()) power.push_back(static_cast<double>(light->Power().MaxComponent()));
   std::vector<PilotPhoton> pilot;
@@ -124,7 +136,7 @@ EmissionGuide Learn(const Scene& scene, int maxDepth, uint64_t seed, const IsUse
         }
       });
     }
-    guide = EmissionGuide(power, pilot);
+    guide = EmissionGuide(power, pilot, cameraRays);
   }
   return guide;
 }
@@ -140,13 +152,14 @@ EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGath
   if (scene.Lights().empty()) return {};
   const VisiblePoints visible = FindVisiblePoints(scene, finalGathers, Hash(seed, kPilot));
   if (visible.maxReach == 0) return {};
-  return Learn(scene, maxDepth, seed,
-               [&](const LightVertex& vertex) { return vertex.scattered > 0 && visible.AreLit(vertex.hit); });
+  return Learn(scene, maxDepth, seed, visible.rays,
+               [&](const LightVertex& vertex, int*) { return vertex.scattered > 0 && visible.AreLit(vertex.hit); });
 }
 
 EmissionGuide LearnJoinedEmissionGuide(const Scene& scene, int maxDepth, uint64_t seed) {
   if (scene.Lights().empty()) return {};
-  return Learn(scene, maxDepth, seed, [&](const LightVertex& vertex) { return IsInPicture(scene, vertex); });
+  return Learn(scene, maxDepth, seed, 0,
+               [&](const LightVertex& vertex, int* rays) { return IsInPicture(scene, vertex, rays); });
 }
 
 }  // namespace dapple

@@ -77,26 +77,30 @@ Vec3 DirectionTable::Sample(const Vec2d& u) const {
 float DirectionTable::Pdf(const Vec3& w) const { return w.z > 0 ? cells_[CellOf(w)] * (kCells * kInvPi) * w.z : 0; }
 
 GatherGuide::GatherGuide(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed)
-    : grid_(scene, kPixels), pilotPaths_(1 << 15) {
+    : grid_(scene, kPixels), pilot_{.lightPaths = 1 << 15} {
   constexpr uint64_t kPilot = 6;
-  using Photons = std::vector<Photon>;
-  auto chunks = ForEachLightPath<Photons>(
-      emission, Hash(seed, kPilot), 0, pilotPaths_,
-      [&](const EmissionSample& emitted, const Sampler& sampler, Photons& chunk) {
-        TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
+  struct Chunk {
+    std::vector<Photon> photons;
+    int64_t rays = 0;
+  };
+  std::vector<Photon> all;
+  ForEachLightPath<Chunk>(
+      emission, Hash(seed, kPilot), 0, pilot_.lightPaths,
+      [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
+        const LightPathEnd end = TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
           if (v.scattered == 0 || v.isCaustic || v.bsdf.IsPurelySpecular()) return;
           const Vec3 n = FaceForward(v.hit.ng, v.hit.wo);
           const float flux = v.flux.Luminance();
           if (flux > 0)
-            chunk.push_back(
+            chunk.photons.push_back(
                 {v.hit.p, n, static_cast<uint32_t>(DirectionTable::CellOf(FrameAround(n).ToLocal(v.hit.wo))), flux});
         });
+        chunk.rays += end.segments;
+      },
+      [&](const Chunk& chunk) {
+        all.insert(all.end(), chunk.photons.begin(), chunk.photons.end());
+        pilot_.rays += chunk.rays;
       });
-  Photons all;
-  for (Photons& chunk : chunks) {
-    all.insert(all.end(), chunk.begin(), chunk.end());
-    chunk = {};
-  }
   Learn(all);
 }
 

@@ -63,7 +63,7 @@ class GatherGuide {
   const DirectionTable* At(const Vec3& p, const Vec3& n) const;
 
   int64_t MemoryBytes() const;
-  int64_t PilotPaths() const { return pilotPaths_; }
+  const PilotUse& Pilot() const { return pilot_; }
 
  private:
   struct Photon {
@@ -85,7 +85,7 @@ class GatherGuide {
   void Learn(const std::vector<Photon>& photons);
 
   ViewGrid grid_;
-  int64_t pilotPaths_ = 0;
+  PilotUse pilot_;
   std::vector<Place> places_ = std::vector<Place>(1);  // a hash table with open addressing, a power of two long
   std::vector<DirectionTable> tables_;
 };

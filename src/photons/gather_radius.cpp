@@ -18,18 +18,28 @@ constexpr auto kNarrowest = static_cast<float>(GatherRadius::kMinPixels / Gather
 /// About as many as a pass has, within bounds.
 int64_t PilotPathsFor(int64_t pathsOfPass) { return std::clamp<int64_t>(pathsOfPass, 1 << 13, 1 << 15); }
 
-/// Where the light paths of the pilot leave photons.
-std::vector<Vec3> ShootPilot(const Scene& scene, const EmissionSampler& emission, int64_t paths, int maxDepth,
-                             bool causticsOnly, uint64_t seed) {
-  using Positions = std::vector<Vec3>;
-  const auto chunks = ForEachLightPath<Positions>(
-      emission, seed, 0, paths, [&](const EmissionSample& emitted, const Sampler& sampler, Positions& chunk) {
-        TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
-          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular() && (v.isCaustic || !causticsOnly)) chunk.push_back(v.hit.p);
+/// Where light paths of the pilot leave photons.
+struct Landings {
+  std::vector<Vec3> positions;
+  int64_t rays = 0;
+};
+
+Landings ShootPilot(const Scene& scene, const EmissionSampler& emission, int64_t paths, int maxDepth, bool causticsOnly,
+                    uint64_t seed) {
+  Landings all;
+  ForEachLightPath<Landings>(
+      emission, seed, 0, paths,
+      [&](const EmissionSample& emitted, const Sampler& sampler, Landings& chunk) {
+        const LightPathEnd end = TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
+          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular() && (v.isCaustic || !causticsOnly))
+            chunk.positions.push_back(v.hit.p);
         });
+        chunk.rays += end.segments;
+      },
+      [&](const Landings& chunk) {
+        all.positions.insert(all.positions.end(), chunk.positions.begin(), chunk.positions.end());
+        all.rays += chunk.rays;
       });
-  Positions all;
-  for (const Positions& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
   return all;
 }
 
@@ -41,11 +51,12 @@ GatherRadius::GatherRadius(const Scene& scene, const EmissionSampler& emission, 
     fixed_ = static_cast<float>(*options.fixed);
     if (!options.forecastsPhotons) return;
   }
-  pilotPaths_ = PilotPathsFor(paths);
+  const int64_t pilotPaths = PilotPathsFor(paths);
   constexpr uint64_t kPilot = 3;
-  std::vector<Vec3> positions =
-      ShootPilot(scene, emission, pilotPaths_, options.maxDepth, options.causticsOnly, Hash(options.seed, kPilot));
-  Fill(Learn(std::move(positions), static_cast<double>(paths) / static_cast<double>(pilotPaths_)));
+  Landings landings =
+      ShootPilot(scene, emission, pilotPaths, options.maxDepth, options.causticsOnly, Hash(options.seed, kPilot));
+  pilot_ = {pilotPaths, landings.rays};
+  Fill(Learn(std::move(landings.positions), static_cast<double>(paths) / static_cast<double>(pilotPaths)));
 }
 
 std::vector<GatherRadius::Finding> GatherRadius::Learn(std::vector<Vec3> positions, double toPass) const {

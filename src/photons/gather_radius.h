@@ -45,8 +45,8 @@ class GatherRadius {
   GatherForecast At(const Vec3& p) const;
 
   int64_t MemoryBytes() const { return static_cast<int64_t>(cells_.size() * sizeof(Cell)); }
-  /// Light paths of the pilot; 0 where nothing was learned.
-  int64_t PilotPaths() const { return pilotPaths_; }
+  /// None where nothing was learned.
+  const PilotUse& Pilot() const { return pilot_; }
 
   static constexpr double kPhotons = 24;
   static constexpr double kMaxPixels = 6;
@@ -73,7 +73,7 @@ class GatherRadius {
   std::vector<Finding> Learn(std::vector<Vec3> positions, double toPass) const;
   Finding FindingAt(const PhotonForest& forest, const Vec3& p, double toPass, std::vector<float>* squared) const;
 
-  int64_t pilotPaths_ = 0;
+  PilotUse pilot_;
   std::optional<float> fixed_;
   float scale_ = 1;
   ViewGrid grid_;                                   // its width is that of the widest radius

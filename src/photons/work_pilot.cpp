@@ -12,29 +12,44 @@ constexpr int kPaths = 4096;
 // In segments, as bench/photon_map_bench and bench/integrator_bench time them: to put a photon into the map, to gather.
 constexpr double kStore = 0.5, kGather = 1.5;
 
-double LightWork(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed) {
-  const auto chunks = ForEachLightPath<double>(
-      emission, seed, 0, kPaths, [&](const EmissionSample& emitted, const Sampler& sampler, double& work) {
+struct Counted {
+  int64_t paths = 0, segments = 0;
+  double others = 0;  ///< work beside the segments
+
+  /// Of a path; one that leaves no light at all costs something too.
+  double Work() const {
+    const double all = static_cast<double>(segments) + others;
+    return std::max(1.0, all / static_cast<double>(std::max<int64_t>(paths, 1)));
+  }
+};
+
+Counted CountLightPaths(const Scene& scene, const EmissionSampler& emission, int maxDepth, uint64_t seed) {
+  Counted sum;
+  sum.paths = kPaths;
+  ForEachLightPath<Counted>(
+      emission, seed, 0, kPaths,
+      [&](const EmissionSample& emitted, const Sampler& sampler, Counted& chunk) {
         const LightPathEnd end = TraceLightPath(scene, emitted, sampler, maxDepth, [&](const LightVertex& v) {
-          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) work += kStore;
+          if (v.scattered > 0 && !v.bsdf.IsPurelySpecular()) chunk.others += kStore;
         });
-        work += end.segments;
+        chunk.segments += end.segments;
+      },
+      [&](const Counted& chunk) {
+        sum.segments += chunk.segments;
+        sum.others += chunk.others;
       });
-  double sum = 0;
-  for (const double work : chunks) sum += work;
-  return sum / kPaths;
+  return sum;
 }
 
-double CameraWork(const Scene& scene, int finalGathers, uint64_t seed) {
-  double work = 0;
-  int64_t paths = 0;
+Counted CountCameraPaths(const Scene& scene, int finalGathers, uint64_t seed) {
+  Counted sum;
   ForEachPilotRay(scene, kPaths, seed, [&](const CameraRay& camera, Sampler& sampler) {
-    ++paths;
+    ++sum.paths;
     // At a surface that gathers there are a shadow ray and one that runs into lights too.
-    const auto visit = [&](const SurfaceInteraction&, const Bsdf&, float) { work += 2 + kGather; };
-    work += FollowCameraPath(scene, camera, finalGathers, sampler, visit);
+    const auto visit = [&](const SurfaceInteraction&, const Bsdf&, float) { sum.others += 2 + kGather; };
+    sum.segments += FollowCameraPath(scene, camera, finalGathers, sampler, visit);
   });
-  return work / static_cast<double>(std::max<int64_t>(paths, 1));
+  return sum;
 }
 
 }  // namespace
@@ -43,9 +58,9 @@ PathWork EstimateWork(const Scene& scene, const EmissionSampler& emission, int m
                       uint64_t seed) {
   constexpr uint64_t kPilot = 4;
   const uint64_t own = Hash(seed, kPilot);
-  // A path that leaves no light at all costs something too.
-  return {std::max(1.0, LightWork(scene, emission, maxDepth, own)), std::max(1.0, CameraWork(scene, finalGathers, own)),
-          kPaths};
+  const Counted light = CountLightPaths(scene, emission, maxDepth, own);
+  const Counted camera = CountCameraPaths(scene, finalGathers, own);
+  return {light.Work(), camera.Work(), {kPaths, light.segments + camera.segments}};
 }
 
 }  // namespace dapple

@@ -10,9 +10,9 @@ namespace dapple {
 
 /// The mean work of one path of each kind, in segments traced. Counted, never timed: the same on any machine.
 struct PathWork {
-  double light = 1;        ///< segments, and photons stored
-  double camera = 1;       ///< segments, light samples and gathers
-  int64_t lightPaths = 0;  ///< that were followed
+  double light = 1;   ///< segments, and photons stored
+  double camera = 1;  ///< segments, light samples and gathers
+  PilotUse pilot;     ///< that counted them
 };
 
 /// From a few thousand paths of each kind; depends on the arguments alone. `finalGathers` as for `FollowCameraPath`.

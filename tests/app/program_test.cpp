@@ -75,7 +75,8 @@ TEST_F(Program, StatisticsCountWhatWasDone) {
 // What `auto` chooses by its pilot costs what the same by name costs, and the pilot: neither time nor paths of it are
 // given away, and the picture is the same.
 TEST_F(Program, StatisticsCountThePilotOfAuto) {
-  constexpr int kPilotPaths = 1 << 14;
+  // Those that look for rare light, and those that tell how many light paths a pass would have.
+  constexpr int kPilotPaths = (1 << 14) + 4096;
   WriteScene("tiny.pbrt");
   // Glass under the floor, in the dark, leaves the light to paths, but the pilot must find that out.
   const std::string dark = Read("tiny.pbrt");
@@ -94,7 +95,9 @@ TEST_F(Program, StatisticsCountThePilotOfAuto) {
   const auto path = statistics("dark.pbrt --integrator path --camera-samples 4 -o a.exr");
   const auto chosenPath = statistics("dark.pbrt --integrator auto -o b.exr");
   EXPECT_EQ(chosenPath["integrator"], "path");
+  EXPECT_GT(chosen["rays"]["inPilots"].get<int>(), hybrid["rays"]["inPilots"].get<int>() + kPilotPaths);
   EXPECT_EQ(path["photons"]["inPilots"], 0);
+  EXPECT_GT(path["rays"]["inPilots"], 0) << "that tell where the picture is noisy";
   EXPECT_GT(chosenPath["photons"]["inPilots"], kPilotPaths) << "with those that taught the guide in vain";
   EXPECT_GE(chosenPath["seconds"], chosenPath["prepareSeconds"]);
   EXPECT_TRUE(Read("a.exr") == Read("b.exr"));
@@ -453,9 +456,15 @@ TEST_F(Program, InfoSaysWhatIsThereAndWhatFollows) {
   ASSERT_EQ(result.exitCode, 0) << result.err;
   for (const char* text :
        {"pbrt version 4: ", "2 shapes", "1 point", "24 x 16 pixels", "light 0: point, power 377 377 377 W",
-        "hybrid: ", "4 passes (the scene's samples a pixel)", "skips"})
+        "hybrid: by a pilot ", "of the light seen comes in ways that paths find seldom",
+        "4 passes (the scene's samples a pixel)", "skips"})
     EXPECT_TRUE(Contains(result.out, text));
   EXPECT_FALSE(Exists("tiny.exr")) << "info renders nothing";
+  EXPECT_TRUE(Contains(Run("info tiny.pbrt --integrator path").out,
+                       "photons and photon maps: the algorithm follows paths from the camera only"));
+  Write("mirror.pbrt", "WorldBegin LightSource \"point\" Material \"conductor\" Shape \"sphere\"");
+  EXPECT_TRUE(Contains(Run("info mirror.pbrt --integrator sppm").out,
+                       "photons and photon maps: none could come to anything here"));
   EXPECT_TRUE(Contains(Run("info tiny.pbrt --integrator path --passes 7").out, "7 passes (asked for)"));
   EXPECT_TRUE(Contains(Run("info tiny.pbrt --pbrt-version 4").out, "pbrt version 4: asked for"));
 }

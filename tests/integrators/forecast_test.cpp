@@ -42,7 +42,7 @@ TEST(Forecast, IsAboutWhatAPassDoes) {
     EXPECT_LE(pass.forecast.lightPaths, 2 * pass.done.photonsEmitted) << integrator;
     EXPECT_LE(pass.done.photonsEmitted, 2 * pass.forecast.lightPaths) << integrator;
     EXPECT_EQ(pass.forecast.storesPhotons, pass.done.photonMaps > 0) << integrator;
-    EXPECT_EQ(pass.forecast.pilotBytes > 0, pass.preparation.pilotPaths > 0) << integrator;
+    EXPECT_EQ(pass.forecast.pilotBytes > 0, pass.preparation.pilots.lightPaths > 0) << integrator;
     EXPECT_GE(pass.forecast.pilotBytes, pass.preparation.tables.bytes) << integrator;
   }
 }
@@ -82,8 +82,8 @@ TEST(Preparation, LearnsNoRadiiWhereOneIsGiven) {
   chosen.guideEmission = given.guideEmission = false;
   given.radius = 0.05;
   for (const std::string_view integrator : {"photon_mapping", "sppm", "hybrid"}) {
-    const int64_t before = PassOf(*scene, integrator, chosen).preparation.pilotPaths;
-    const int64_t after = PassOf(*scene, integrator, given).preparation.pilotPaths;
+    const int64_t before = PassOf(*scene, integrator, chosen).preparation.pilots.lightPaths;
+    const int64_t after = PassOf(*scene, integrator, given).preparation.pilots.lightPaths;
     EXPECT_EQ(after < before, integrator != "hybrid") << integrator << ": " << before << ", then " << after;
   }
 }

@@ -83,19 +83,24 @@ TEST_P(Emission, MeanFluxIsTheScenesPower) {
 
 TEST_P(Emission, DensityOfASampleIsWhatPdfSays) {
   constexpr int kSamples = 2000;
+  int others = 0;
   for (int i = 0; i < kSamples; ++i) {
     const auto photon = emission_.Sample(Random(i, kSamples));
     ASSERT_TRUE(photon);
     const EmissionPdf pdf = emission_.Pdf(photon->light, photon->le.ray, photon->le.From());
     EXPECT_DOUBLE_EQ(pdf.light, photon->pdfLight);
     const double sampled = photon->le.pdfPos * photon->le.pdfDir * photon->bend;
-    // A guide's cell is found from the ray in float: at the border of two cells it may be the neighbour.
+    const double ratio = pdf.position * pdf.direction * pdf.bend / sampled;
+    if (std::abs(ratio - 1) < 1e-4) continue;
+    // A guide's cell is found from the ray in float: at the border of two cells it may be the neighbour, seldom.
+    ++others;
     const double own = photon->own.direction.x * 64, other = photon->own.direction.y * 64;
     const double x = photon->own.position.x * 64, y = photon->own.position.y * 64;
     const auto nearBorder = [](double c) { return std::abs(c - std::round(c)) < 0.05; };
-    if (GetParam() != Guide::None && (nearBorder(own) || nearBorder(other) || nearBorder(x) || nearBorder(y))) continue;
-    EXPECT_NEAR(pdf.position * pdf.direction * pdf.bend / sampled, 1, 1e-4) << "light " << photon->light;
+    EXPECT_TRUE(nearBorder(own) || nearBorder(other) || nearBorder(x) || nearBorder(y))
+        << "light " << photon->light << ": " << ratio;
   }
+  EXPECT_LE(others, GetParam() == Guide::None ? 0 : kSamples / 100);
 }
 
 TEST_P(Emission, InverseLeadsBackToTheRay) {
