@@ -27,7 +27,7 @@ struct PassStats {
   int64_t shadowRays = 0;      ///< visibility tests of connections
   int64_t photonRays = 0;      ///< segments traced from the lights
   int64_t probeRays = 0;       ///< short segments that ask how much of a gather's disk its surface fills
-  int64_t photonsEmitted = 0;  ///< light paths begun
+  int64_t photonsEmitted = 0;  ///< light paths that left a light
   int64_t photonsStored = 0;
   int64_t gathers = 0;          ///< photon map queries
   int64_t photonsGathered = 0;  ///< photons within reach of a query

@@ -80,14 +80,13 @@ struct ShotPhotons {
     photons.push_back(photon);
   }
 
-  /// Adds what comes behind, of a pass with so many light paths.
-  void Append(const ShotPhotons& next, int64_t paths) {
+  /// Adds what comes behind; with it this is about that share of all.
+  void Append(const ShotPhotons& next, double share) {
     stats += next.stats;
     const size_t count = photons.size() + next.photons.size();
     if (count > photons.capacity()) {
       // As many as the paths so far make likely, and a tenth: room that is not filled takes no memory.
-      const double likely =
-          1.1 * static_cast<double>(count) * static_cast<double>(paths) / static_cast<double>(stats.photonsEmitted);
+      const double likely = 1.1 * static_cast<double>(count) / share;
       const size_t room = std::max(count + count / 2, static_cast<size_t>(likely));
       positions.reserve(room);
       photons.reserve(room);
@@ -128,7 +127,9 @@ ShotPhotons<Photon> ShootPhotons(const PhotonPlan& plan, uint64_t seed, int pass
     ++chunk.stats.photonsEmitted;
     walk(emitted, sampler, chunk);
   };
-  const auto take = [&](const ShotPhotons<Photon>& chunk) { all.Append(chunk, plan.paths); };
+  const auto take = [&](const ShotPhotons<Photon>& chunk, int64_t pathsSoFar) {
+    all.Append(chunk, static_cast<double>(pathsSoFar) / static_cast<double>(plan.paths));
+  };
   ForEachLightPath<ShotPhotons<Photon>>(plan.emission, seed, pass, plan.paths, trace, take);
   all.stats.photonsStored += static_cast<int64_t>(all.photons.size());
   return all;

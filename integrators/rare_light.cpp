@@ -213,7 +213,7 @@ std::vector<Arrivals> ShootLight(const Scene& scene, const IntegratorOptions& op
         const auto scatter = [&](const LightVertex& vertex, const BsdfSample& next) { walk.Scatter(vertex, next); };
         chunk.rays += TraceLightPath(scene, emitted, sampler, options.maxDepth, visit, scatter).segments;
       },
-      [&](const Chunk& chunk) {
+      [&](const Chunk& chunk, int64_t) {
         for (size_t i = 0; i < chunk.arrivals.size(); ++i) sums[i] += chunk.arrivals[i];
         pilot->rays += chunk.rays;
       });

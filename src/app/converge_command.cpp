@@ -147,9 +147,12 @@ bool AddStudy(const ConvergeOptions& options, const std::atomic<bool>& stop, std
     Study study = RunStudy(options, options.isQuiet, stop);
     const Image reference = study.pictures.reference;
     const std::string failure = study.failure;
-    if (study.HasRuns()) studies->push_back(std::move(study));
+    const bool hasRuns = study.HasRuns();
+    if (hasRuns) studies->push_back(std::move(study));
     if (!failure.empty()) Tell(failure);
-    if (options.referenceFile.empty()) WriteExr(ReferencePath(options, SceneName(options.scene.scene)), reference);
+    // One that nothing is compared with does not replace another.
+    if (hasRuns && options.referenceFile.empty())
+      WriteExr(ReferencePath(options, SceneName(options.scene.scene)), reference);
     return failure.empty();
   } catch (const std::exception& error) {
     Tell(ErrorLine(error));
@@ -168,9 +171,9 @@ int RunConverge(ConvergeOptions options) {
   if (options.scenes.size() > 1) CheckScenes(options, signals.Flag());
   std::vector<Study> studies;
   bool isWhole = true;
-  for (size_t i = 0; i < options.scenes.size() && isWhole && !signals.Flag(); ++i) {
+  for (size_t i = 0; i < options.scenes.size() && !signals.Flag(); ++i) {
     options.scene.scene = options.scenes[i];
-    isWhole = AddStudy(options, signals.Flag(), &studies);
+    isWhole &= AddStudy(options, signals.Flag(), &studies);
   }
   if (studies.empty()) {
     if (signals.Flag()) Tell("stopped before the first run was complete; no report is written");

@@ -23,8 +23,9 @@ constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
 void Handle(int signal) {
   constexpr std::string_view kMessage =
       "\nstopping after this pass, or before the first one; once more to quit at once\n";
-  if (stopFlag.exchange(true)) _exit(kExitFailure);
-  stopSignal = signal;
+  int none = 0;
+  if (!stopSignal.compare_exchange_strong(none, signal)) _exit(kExitFailure);
+  stopFlag = true;
   const int error = errno;
   // Nothing can be done here where the message cannot be written.
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());

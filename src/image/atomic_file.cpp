@@ -1,9 +1,10 @@
 #include "src/image/atomic_file.h"
 
-#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -68,43 +69,55 @@ class OutputFile {
 
 fs::path FolderOf(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
-// Whether a file in the target's folder has the name of one of its temporaries.
-bool IsTemporaryName(const std::string& name, const fs::path& target) {
-  const std::string begin = fmt::format(".{}.", target.filename().string()), end = ".tmp";
-  return name.starts_with(begin) && name.ends_with(end) &&
-         name.find_first_not_of("0123456789.", begin.size()) == name.size() - end.size() + 1;
+// Whether a file in the target's folder has the name of one of its temporaries: two numbers behind the target's.
+bool IsTemporaryName(std::string_view name, const fs::path& target) {
+  const std::string begin = fmt::format(".{}.", target.filename().string());
+  constexpr std::string_view kEnd = ".tmp", kDigits = "0123456789";
+  if (!name.starts_with(begin) || !name.ends_with(kEnd) || name.size() < begin.size() + kEnd.size()) return false;
+  const std::string_view numbers = name.substr(begin.size(), name.size() - begin.size() - kEnd.size());
+  const size_t dot = numbers.find_first_not_of(kDigits);
+  return dot != 0 && dot != std::string_view::npos && dot + 1 < numbers.size() && numbers[dot] == '.' &&
+         numbers.find_first_not_of(kDigits, dot + 1) == std::string_view::npos;
 }
 
 /// Held by who writes a temporary file until it is renamed or removed, or the process ends however it ends: so it tells
-/// on all machines and in all containers that share the folder which temporaries are nobody's.
+/// which temporaries are nobody's, to all processes whose locks the file system brings together: those of one machine,
+/// in whatever container, and on most network file systems those of all machines.
 bool Lock(int descriptor) { return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0; }
+
+bool IsNameOf(int descriptor, const fs::path& name) {
+  struct stat opened, named;
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
+}
 
 // Removes the temporary files for `target` that were left behind by processes that were killed while they wrote.
 void RemoveStaleTemporaries(const fs::path& target) {
   std::error_code ignored;
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(FolderOf(target), ignored))
-    if (IsTemporaryName(entry.path().filename().string(), target)) found.push_back(entry.path());
+  for (fs::directory_iterator entry(FolderOf(target), ignored); !ignored && entry != fs::directory_iterator();
+       entry.increment(ignored))
+    if (IsTemporaryName(entry->path().filename().string(), target)) found.push_back(entry->path());
   for (const fs::path& file : found) {
     const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) continue;
-    if (Lock(descriptor)) ::unlink(file.c_str());
+    // Since it was opened it may have been renamed, and another have its name.
+    if (Lock(descriptor) && IsNameOf(descriptor, file)) ::unlink(file.c_str());
     ::close(descriptor);
   }
 }
 
 // A new file in the target's folder, locked; -1 and errno where there can be none.
 int OpenTemporary(const fs::path& target, fs::path* name) {
-  for (int i = 0;; ++i) {
-    *name = target.parent_path() / fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), i);
+  static std::atomic<int64_t> number = 0;  // none is used twice
+  for (;;) {
+    *name = target.parent_path() / fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), number++);
     const int descriptor = ::open(name->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) return -1;
     // Another process may take it for stale before the lock is held. Where there are no locks nobody takes it for
     // stale.
-    struct stat status;
-    if ((Lock(descriptor) || errno != EWOULDBLOCK) && ::fstat(descriptor, &status) == 0 && status.st_nlink > 0)
-      return descriptor;
+    if ((Lock(descriptor) || errno != EWOULDBLOCK) && IsNameOf(descriptor, *name)) return descriptor;
     ::close(descriptor);
   }
 }

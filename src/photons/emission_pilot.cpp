@@ -60,14 +60,14 @@ VisiblePoints FindVisiblePoints(const Scene& scene, int finalGathers, uint64_t s
           points.push_back({reach, OctahedralVector(FaceForward(hit.ng, hit.wo)), bsdf.Flags().HasTransmission()});
         });
   });
-  if (points.empty()) return {};
+  VisiblePoints visible;
+  visible.rays = rays;
+  if (points.empty()) return visible;
   // Far points would reach over all others.
   std::vector<float> reaches;
   for (const VisiblePoint& point : points) reaches.push_back(point.reach);
   const auto middle = reaches.begin() + static_cast<ptrdiff_t>(reaches.size() / 2);
   std::nth_element(reaches.begin(), middle, reaches.end());
-  VisiblePoints visible;
-  visible.rays = rays;
   for (VisiblePoint& point : points) {
     point.reach = std::min(point.reach, 4 * *middle) * static_cast<float>(step);
     visible.maxReach = std::max(visible.maxReach, point.reach);
@@ -151,7 +151,7 @@ int64_t EmissionPilotBytes(const Scene& scene) {
 EmissionGuide LearnEmissionGuide(const Scene& scene, int maxDepth, int finalGathers, uint64_t seed) {
   if (scene.Lights().empty()) return {};
   const VisiblePoints visible = FindVisiblePoints(scene, finalGathers, Hash(seed, kPilot));
-  if (visible.maxReach == 0) return {};
+  if (visible.maxReach == 0) return {{}, {}, visible.rays};
   return Learn(scene, maxDepth, seed, visible.rays,
                [&](const LightVertex& vertex, int*) { return vertex.scattered > 0 && visible.AreLit(vertex.hit); });
 }

@@ -97,7 +97,7 @@ GatherGuide::GatherGuide(const Scene& scene, const EmissionSampler& emission, in
         });
         chunk.rays += end.segments;
       },
-      [&](const Chunk& chunk) {
+      [&](const Chunk& chunk, int64_t) {
         all.insert(all.end(), chunk.photons.begin(), chunk.photons.end());
         pilot_.rays += chunk.rays;
       });

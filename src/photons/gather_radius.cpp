@@ -36,7 +36,7 @@ Landings ShootPilot(const Scene& scene, const EmissionSampler& emission, int64_t
         });
         chunk.rays += end.segments;
       },
-      [&](const Landings& chunk) {
+      [&](const Landings& chunk, int64_t) {
         all.positions.insert(all.positions.end(), chunk.positions.begin(), chunk.positions.end());
         all.rays += chunk.rays;
       });

@@ -104,14 +104,14 @@ LightPathEnd TraceLightPath(const Scene& scene, const EmissionSample& emitted, S
 }
 
 /// Begins `paths` light paths of a pass and calls `walk(const EmissionSample&, const Sampler&, Chunk&)` for each that
-/// leaves a light. Paths are cut into chunks of 2,048, whatever the number of threads, which run in parallel, each with
-/// a `Chunk` of its own. Calls `take(Chunk&&)` with each in the order of the paths, so that few of them are held at a
-/// time.
+/// leaves a light. Paths are cut into chunks of 512, whatever the number of threads, which run in parallel, each with
+/// a `Chunk` of its own. Calls `take(Chunk&&, int64_t pathsSoFar)` with each in the order of the paths, so that only
+/// those of a sixteenth of the paths, or of 2^15 where that is more, are held at a time.
 template <typename Chunk, typename Walk, typename Take>
 void ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, int64_t paths, Walk&& walk,
                       Take&& take) {
-  constexpr int64_t kChunk = 2048;
-  const int64_t pathsAtATime = kChunk * std::max(16, 8 * ThreadCount());
+  constexpr int64_t kChunk = 512;
+  const int64_t pathsAtATime = kChunk * std::max<int64_t>(64, paths / (16 * kChunk));
   for (int64_t first = 0; first < paths; first += pathsAtATime) {
     const int64_t count = std::min(pathsAtATime, paths - first);
     std::vector<Chunk> chunks(static_cast<size_t>((count + kChunk - 1) / kChunk));
@@ -122,7 +122,8 @@ void ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, 
         if (const std::optional<EmissionSample> emitted = EmitPhoton(emission, sampler)) walk(*emitted, sampler, chunk);
       }
     });
-    for (Chunk& chunk : chunks) take(std::exchange(chunk, {}));
+    for (size_t i = 0; i < chunks.size(); ++i)
+      take(std::exchange(chunks[i], {}), std::min(paths, first + static_cast<int64_t>(i + 1) * kChunk));
   }
 }
 
@@ -132,7 +133,7 @@ std::vector<Chunk> ForEachLightPath(const EmissionSampler& emission, uint64_t se
                                     Walk&& walk) {
   std::vector<Chunk> chunks;
   ForEachLightPath<Chunk>(emission, seed, pass, paths, std::forward<Walk>(walk),
-                          [&](Chunk&& chunk) { chunks.push_back(std::move(chunk)); });
+                          [&](Chunk&& chunk, int64_t) { chunks.push_back(std::move(chunk)); });
   return chunks;
 }
 

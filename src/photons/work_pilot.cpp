@@ -34,7 +34,7 @@ Counted CountLightPaths(const Scene& scene, const EmissionSampler& emission, int
         });
         chunk.segments += end.segments;
       },
-      [&](const Counted& chunk) {
+      [&](const Counted& chunk, int64_t) {
         sum.segments += chunk.segments;
         sum.others += chunk.others;
       });

@@ -71,7 +71,10 @@ void Checkpoint::Save(const Film& film, double seconds) {
 void Checkpoint::SetOlderAside() {
   std::error_code failure;
   if (!isOurs_ && std::filesystem::is_regular_file(path_, failure)) {
-    std::filesystem::rename(path_, olderPath_, failure);
+    // Under both names until the new one takes its place; where a file has one name only it is renamed.
+    if (std::filesystem::is_regular_file(olderPath_, failure)) std::filesystem::remove(olderPath_, failure);
+    std::filesystem::create_hard_link(path_, olderPath_, failure);
+    if (failure) std::filesystem::rename(path_, olderPath_, failure);
     if (failure)
       throw Error(FileLocation(path_), fmt::format("cannot rename it to '{}': {}", olderPath_, failure.message()));
     if (onSetAside_) onSetAside_(olderPath_);

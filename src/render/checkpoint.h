@@ -31,8 +31,7 @@ class Checkpoint {
              OnSetAside onSetAside = {});
 
   /// The film that was saved; nothing where there is no file. Throws `Error` where it is damaged, is of another render
-  /// (saying what differs), or holds passes that are not of the budget. Clears away what a killed render left half
-  /// written.
+  /// (saying what differs), or holds passes that are not of the budget.
   std::optional<Film> Load(const RenderBudget& budget);
 
   /// Saves where the interval has passed since the last save (or the beginning) and a pass was done since. Where that

@@ -52,10 +52,14 @@ class ErrorWatch {
   ErrorWatch(std::optional<double> wanted, float exposure) : wanted_(wanted), exposure_(exposure) {}
 
   void Look(const Film& film) {
-    if (wanted_ && IsErrorDue(static_cast<int>(film.PassCount()))) last_ = EstimateError(film, exposure_);
+    if (!wanted_ || !IsErrorDue(static_cast<int>(film.PassCount()))) return;
+    last_ = EstimateError(film, exposure_);
+    isLost_ = !last_;
   }
   const std::optional<ErrorEstimate>& Last() const { return last_; }
   bool IsReached() const { return last_ && last_->Total() < *wanted_; }
+  /// The memory does not suffice to estimate it.
+  bool IsLost() const { return isLost_; }
   /// Of the way, in [0, 1], if the square of the error falls as 1 / passes.
   double Fraction() const { return last_ ? std::min(1., Sqr(*wanted_ / last_->Total())) : 0; }
 
@@ -63,6 +67,7 @@ class ErrorWatch {
   std::optional<double> wanted_;
   float exposure_;
   std::optional<ErrorEstimate> last_;
+  bool isLost_ = false;
 };
 
 /// The first pass of the budget that the film does not hold.
@@ -131,6 +136,8 @@ RenderResult Render(const Scene& scene, uint64_t seed, Integrator& integrator, F
     const int passesBefore = static_cast<int>(film.PassCount());
     const double begin = watch.Seconds();
     if (error.IsReached() || IsSpent(budget, passesBefore, begin, clock)) break;
+    // Else nothing would end it.
+    if (error.IsLost() && !budget.passes && !budget.seconds) break;
     if (IsStopAsked(hooks)) {
       result.stopped = true;
       break;

@@ -298,7 +298,8 @@ TEST_F(Failure, ARenderThatDoesNotFitSaysSoBeforeItStarts) {
 TEST_F(Failure, ARenderThatGoesOnTakesNoMoreThanWasReckoned) {
   if (testing_support::kIsSanitized) GTEST_SKIP() << "sanitizers have memory of their own";
   WriteScene("tiny.pbrt");
-  const std::string command = "tiny.pbrt --quiet --integrator path --resolution 1000x800 --passes 1 -o a.exr ";
+  const std::string command =
+      "tiny.pbrt --quiet --threads 2 --integrator path --resolution 1000x800 --passes 1 -o a.exr ";
   ASSERT_EQ(Run(command + "--checkpoint 60").exitCode, 0);
   const std::string needs = Run(command + "--resume --memory 1M").err, beginning = "error: the render takes about ";
   ASSERT_TRUE(BeginsWith(needs, beginning));

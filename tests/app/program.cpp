@@ -30,7 +30,7 @@ Material "dielectric"
 Shape "sphere" "float radius" [1]
 )";
 
-// A pass has several chunks of light paths (2048) and buckets of photons (2048). Of the two floors, which are one in
+// A pass has several chunks of light paths (512) and buckets of photons (2048). Of the two floors, which are one in
 // place, no ray may see one today and the other tomorrow.
 constexpr const char* kSharedWork = R"(LookAt 0 2 -6  0 0.5 0  0 1 0
 Camera "perspective" "float fov" [40]

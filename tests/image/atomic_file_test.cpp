@@ -57,8 +57,9 @@ TEST(AtomicFile, FollowsLinksToWhatIsNotThereYet) {
 TEST(AtomicFile, ClearsWhatTheDeadLeftBehindAndNothingElse) {
   const TemporaryFolder folder;
   const std::string stale = fmt::format(".a.{}.0.tmp", getpid()), alive = fmt::format(".a.{}.1.tmp", getpid());
-  const std::vector<std::string> others = {".a.b.7.0.tmp", ".b.7.0.tmp", ".a.7.0",
-                                           "a.7.0.tmp",    ".a.x.0.tmp", ".a..tmpx"};
+  const std::vector<std::string> others = {".a.b.7.0.tmp", ".b.7.0.tmp",   ".a.7.0",    "a.7.0.tmp",
+                                           ".a.x.0.tmp",   ".a..tmpx",     ".a.tmp",    ".a.5.tmp",
+                                           ".a..tmp",      ".a.1.2.3.tmp", ".a.1..tmp", ".a..1.tmp"};
   folder.Write("a", "old");
   std::filesystem::create_symlink(folder.Path("a"), folder.Path("link"));
   for (const std::string& name : others) folder.Write(name, "");
