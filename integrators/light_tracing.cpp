@@ -52,23 +52,21 @@ PassStats LightTracingIntegrator::RenderEmitters(int pass, Film& film) const {
 }
 
 PassStats LightTracingIntegrator::RenderLightPaths(int pass, Film& film) const {
-  struct Chunk {
-    PassStats stats;
-  };
-  const std::vector<Chunk> chunks = ForEachLightPath<Chunk>(
-      *emission_, seed_, pass, paths_, [&](const EmissionSample& emitted, const Sampler& sampler, Chunk& chunk) {
-        ++chunk.stats.photonsEmitted;
+  PassStats sum;
+  ForEachLightPath<PassStats>(
+      *emission_, seed_, pass, paths_,
+      [&](const EmissionSample& emitted, const Sampler& sampler, PassStats& chunk) {
+        ++chunk.photonsEmitted;
         const auto join = [&](const LightVertex& vertex) {
           // The lens is a decision of its own, apart from the walk's.
           constexpr int kLensBlock = 1 << 16;
           Sampler lens = sampler;
           lens.StartBlock(kLensBlock + vertex.scattered);
-          Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths_), pass, film, chunk.stats);
+          Join(vertex, lens.Get2D(), 1 / static_cast<float>(paths_), pass, film, chunk);
         };
-        AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, join), emitted, &chunk.stats);
-      });
-  PassStats sum;
-  for (const Chunk& chunk : chunks) sum += chunk.stats;
+        AddLightPath(TraceLightPath(*scene_, emitted, sampler, options_.maxDepth, join), emitted, &chunk);
+      },
+      [&](const PassStats& chunk, int64_t) { sum += chunk; });
   return sum;
 }
 

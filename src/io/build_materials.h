@@ -14,7 +14,7 @@ namespace dapple {
 
 struct MaterialInput;
 
-/// Builds the materials that shapes ask for, and those that their mixes name, each once.
+/// Builds the materials that shapes ask for, and those that mixes name, each once for all mixes.
 class Materials {
  public:
   /// `values` must live as long.

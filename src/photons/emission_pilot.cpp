@@ -20,7 +20,7 @@ constexpr int64_t kMostPhotons = 1 << 16;
 /// A point that the camera looks at; it stands for the surface within its reach.
 struct VisiblePoint {
   float reach = 0;
-  OctahedralVector n{Vec3(0, 0, 1)};  ///< normal on the side from which it is seen
+  OctahedralVector n;  ///< normal on the side from which it is seen
   bool transmits = false;
 };
 

@@ -127,14 +127,4 @@ void ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, 
   }
 }
 
-/// The same; returns the chunks in the order of the paths.
-template <typename Chunk, typename Walk>
-std::vector<Chunk> ForEachLightPath(const EmissionSampler& emission, uint64_t seed, int pass, int64_t paths,
-                                    Walk&& walk) {
-  std::vector<Chunk> chunks;
-  ForEachLightPath<Chunk>(emission, seed, pass, paths, std::forward<Walk>(walk),
-                          [&](Chunk&& chunk, int64_t) { chunks.push_back(std::move(chunk)); });
-  return chunks;
-}
-
 }  // namespace dapple
